@@ -39,12 +39,12 @@ async fn exchanges_images_and_messages() {
     let server = serve(setup());
     let scanner = Scanner::start(LOOPBACK).unwrap();
     let mut connection = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
-    let generation = connection.view().generation;
+    let generation = connection.views.now().generation;
     // In this order, the image that comes back is an answer to both changes.
     connection.set_run(generation, true).unwrap();
     let change = connection.set_image(generation, &[0x5A; 48]).unwrap();
     let is_back = |image: &[u8]| image == [0xA5; 48];
-    let view = connection.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))).await;
+    let view = connection.views.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))).await;
     assert!(view.sent >= change);
     assert!(server.with(|adapter, _| adapter.application.run));
 
@@ -117,7 +117,8 @@ async fn several_connections_share_a_socket() {
     }
     for (connection, mark) in connections.iter_mut().zip(1u8..) {
         let expected = [!mark; 48];
-        let view = connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == expected)).await;
+        let view =
+            connection.views.until(|view| view.input.as_ref().is_some_and(|input| *input.image == expected)).await;
         assert_eq!(view.state, State::Open);
     }
 }
@@ -131,9 +132,9 @@ async fn survives_a_bad_network() {
     let mut connection = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
     for mark in 1..20 {
         connection.set_image(1, &[mark; 48]).unwrap();
-        connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!mark; 48])).await;
+        connection.views.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!mark; 48])).await;
     }
-    let view = connection.until(|view| view.statistics.lost > 0 && view.statistics.stale > 0).await;
+    let view = connection.views.until(|view| view.statistics.lost > 0 && view.statistics.stale > 0).await;
     assert_eq!((view.state, view.generation), (State::Open, 1));
 }
 
@@ -173,15 +174,15 @@ async fn reopens_a_lost_link() {
     let settings = Settings { multiplier: Multiplier::of(64).unwrap(), ..quick() };
     let mut connection = scanner.open(server.address(), settings, Tap::default()).await.unwrap();
     connection.set_image(1, &[7; 48]).unwrap();
-    connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!7; 48])).await;
+    connection.views.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!7; 48])).await;
     server.with(|adapter, _| adapter.set_fault(Some(AdapterFault::Stall)));
-    let view = connection.until(|view| view.state == State::Lost).await;
+    let view = connection.views.until(|view| view.state == State::Lost).await;
     assert_eq!(view.last_error, Some(EipError::Silent(640 * MS)));
     assert_eq!(connection.set_image(1, &[8; 48]), Err(EipError::Outdated));
     server.with(|adapter, _| adapter.set_fault(None));
-    connection.until(|view| view.generation == 2 && view.state == State::Open).await;
+    connection.views.until(|view| view.generation == 2 && view.state == State::Open).await;
     let rest: Vec<u8> = image_after_loss(&resting(), &[7; 48]).iter().map(|byte| !byte).collect();
-    connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == *rest)).await;
+    connection.views.until(|view| view.input.as_ref().is_some_and(|input| *input.image == *rest)).await;
 }
 
 #[tokio::test]
@@ -237,7 +238,7 @@ async fn tap_receives_all_packets() {
     };
     let scanner = Scanner::start(LOOPBACK).unwrap();
     let mut connection = scanner.open(server.address(), quick(), tap).await.unwrap();
-    connection.until(|view| view.input.is_some()).await;
+    connection.views.until(|view| view.input.is_some()).await;
     connection.close().await.unwrap();
     let seen = seen.lock().unwrap();
     let images = SocketAddrV4::new(LOOPBACK, server.io_port);

@@ -30,7 +30,7 @@ impl Polled {
     /// The slave does not answer, refuses, or does not have the expected image sizes.
     pub async fn open(network: &Network, settings: Settings) -> Result<Self, Error> {
         let connection = network.connect(settings).await?;
-        let size = connection.view().details.size;
+        let size = connection.views.now().details.size;
         let size = size.ok_or_else(|| Error::Settings("the connection carries only messages, no images".to_owned()))?;
         Ok(Self::over(connection, Sizes { output: size, input: size }))
     }
@@ -56,11 +56,11 @@ impl Bus for Connection {
     }
 
     fn watchdog(&self) -> Duration {
-        self.view().details.rate.unwrap_or_default() * WATCHDOG
+        self.views.now().details.rate.unwrap_or_default() * WATCHDOG
     }
 
     fn traffic(&self) -> Traffic {
-        let view = self.view();
+        let view = self.views.now();
         let counted = view.statistics;
         let (health, _) = self.network().health();
         let irregular = vec![
@@ -169,7 +169,7 @@ impl Reading {
 
     async fn wait(&mut self, reported: ReportedState<'_>) -> Event {
         loop {
-            let view = self.connection.view();
+            let view = self.connection.views.now();
             if reported.is_up && view.state != State::Open {
                 let error = view.last_error.unwrap_or(Error::Outdated);
                 return Event::Lost(LinkError::Lost { cause: Cause::new(error), outputs: Outputs::Never });

@@ -283,20 +283,11 @@ const ONLY_LISTENS: &str = "the adapter only listens";
 pub struct Connection {
     network: Network,
     number: u64,
-    pub(super) views: Views,
+    /// Its states: the current one, and those that follow.
+    pub views: Views,
 }
 
 impl Connection {
-    /// Current state.
-    pub fn view(&self) -> View {
-        self.views.now()
-    }
-
-    /// Waits until `condition` is true, or until the connection is closed.
-    pub async fn until(&mut self, condition: impl FnMut(&View) -> bool) -> View {
-        self.views.until(condition).await
-    }
-
     /// Sends this image, starting with the next poll; see [`Scanner::set_image`].
     ///
     /// # Errors
@@ -321,7 +312,7 @@ impl Connection {
     /// # Errors
     /// The slave did not confirm the release.
     pub async fn close(mut self) -> Result<(), Error> {
-        let before = self.view().last_error;
+        let before = self.views.now().last_error;
         self.with(|scanner, now| scanner.close(now, self.number));
         self.views.closed(before.as_ref()).await
     }

@@ -57,7 +57,7 @@ impl Bus for Device {
     fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, EipError> {
         let change = self.connection.set_image(generation, image)?;
         // The device starts in idle mode after every opening. The first image then also sets the run bit.
-        let runs = self.connection.view().details.run;
+        let runs = self.connection.views.now().details.run;
         if runs { Ok(change) } else { self.connection.set_run(generation, true) }
     }
 
@@ -70,7 +70,7 @@ impl Bus for Device {
     }
 
     fn traffic(&self) -> Traffic {
-        let view = self.connection.view();
+        let view = self.connection.views.now();
         let counted = view.statistics;
         let irregular = vec![
             (counted.lost, "lost"),

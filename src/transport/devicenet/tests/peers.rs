@@ -97,11 +97,11 @@ async fn our_master_satisfies_a_strict_slave() {
         let network =
             Network::open(&Adapter { place, bitrate: Bitrate::K500, identity }, Tap::default()).await.unwrap();
         let mut connection = network.connect(images(5)).await.unwrap();
-        let first = connection.view().sent;
-        connection.until(|view| view.sent > first).await;
+        let first = connection.views.now().sent;
+        connection.views.until(|view| view.sent > first).await;
         let image = vec![0x5A; size.into()];
         let change = connection.set_image(1, &image).unwrap();
-        connection.until(|view| view.sent >= change).await;
+        connection.views.until(|view| view.sent >= change).await;
         connection.close().await.unwrap();
         let mut rest = String::new();
         told.read_to_string(&mut rest).unwrap();

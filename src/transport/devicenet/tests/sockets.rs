@@ -48,14 +48,14 @@ async fn exchanges_images_over_tcp_and_a_pseudo_terminal() {
         };
         let network = Network::open(&adapter(place, 1), Tap::default()).await.unwrap();
         let mut connection = network.connect(images(5)).await.unwrap();
-        let view = connection.view();
+        let view = connection.views.now();
         assert_eq!((view.details.size, view.generation), (Some(48), 1));
         let mut image = resting(48);
         image[32..].fill(0x5A);
         let change = connection.set_image(1, &image).unwrap();
-        connection.until(|view| view.sent >= change).await;
+        connection.views.until(|view| view.sent >= change).await;
         assert_eq!(hub.with(|device, _| device.application.image.clone()), Some(image.clone()));
-        connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == *image)).await;
+        connection.views.until(|view| view.input.as_ref().is_some_and(|input| *input.image == *image)).await;
         let name = connection.ask(Request::get(class::IDENTITY, 1, 7)).await.unwrap();
         assert!(matches!(name, Answer::Done { data, .. } if data[1..] == *b"YRCX (sim)"));
         connection.close().await.unwrap();
@@ -100,7 +100,7 @@ async fn reopens_an_adapter_after_a_loss() {
     let network = Network::open(&adapter(place(&first), 1), Tap::default()).await.unwrap();
     let mut connection = network.connect(images(5)).await.unwrap();
     drop(first);
-    let view = connection.until(|view| view.state == State::Lost).await;
+    let view = connection.views.until(|view| view.state == State::Lost).await;
     assert!(matches!(view.last_error, Some(Error::Port(PortError::Gone { .. }))), "{:?}", view.last_error);
     let device = Device::on_line(setup(5, 48), Mirror::default());
     let second = loop {
@@ -110,7 +110,7 @@ async fn reopens_an_adapter_after_a_loss() {
             Err(_) => tokio::task::yield_now().await,
         }
     };
-    let view = connection.until(|view| view.state == State::Open).await;
+    let view = connection.views.until(|view| view.state == State::Open).await;
     assert_eq!(view.generation, 2);
     connection.close().await.unwrap();
     drop(second);
@@ -181,7 +181,7 @@ async fn reports_wrong_bit_rate_and_bus_off() {
     let network = Network::open(&adapter(place(&hub), 1), Tap::default()).await.unwrap();
     let mut connection = network.connect(images(5)).await.unwrap();
     hub.with(|device, _| device.set_fault(Some(DeviceFault::BusOff)));
-    let view = connection.until(|view| view.state == State::Lost).await;
+    let view = connection.views.until(|view| view.state == State::Lost).await;
     assert!(matches!(view.last_error, Some(Error::BusOff | Error::Lost { .. })), "{:?}", view.last_error);
 }
 
