@@ -285,8 +285,10 @@ impl From<Error> for LinkError {
             Error::Owned(_) => Self::Owned(cause),
             Error::Size { .. } => Self::Size(cause),
             Error::Refused { .. } => Self::Refused(cause),
-            Error::Silent { .. } | Error::Lost { .. } | Error::BusOff => Self::Silent(cause),
-            Error::Port(PortError::Open { .. } | PortError::Mute(_) | PortError::Gone { .. }) => Self::Silent(cause),
+            Error::Silent { .. }
+            | Error::Lost { .. }
+            | Error::BusOff
+            | Error::Port(PortError::Open { .. } | PortError::Mute(_) | PortError::Gone { .. }) => Self::Silent(cause),
             Error::Senseless { .. } | Error::Port(PortError::Setup { .. } | PortError::Flooded(_)) => {
                 Self::Malformed(cause)
             }
