@@ -515,10 +515,10 @@ enum Refusal {
 fn invalid_frames() -> Vec<(&'static str, Refusal)> {
     vec![
         ("M02p", Refusal::Parse(WireError::DataSize { stated: 0, present: 8 })),
-        ("N01", Refusal::Parse(WireError::Identifier { found: *b"YERX" })),
+        ("N01", Refusal::Parse(WireError::Identifier(*b"YERX"))),
         ("N03", Refusal::Parse(WireError::DataSize { stated: 4, present: 0 })),
-        ("N05", Refusal::Parse(WireError::Division { found: 3 })),
-        ("N07", Refusal::Parse(WireError::Truncated { len: 31 })),
+        ("N05", Refusal::Parse(WireError::Division(3))),
+        ("N07", Refusal::Parse(WireError::Truncated(31))),
         ("N09", Refusal::Check(|error| matches!(error, RequestError::Command { command: 0x8D }))),
         ("N11", Refusal::Check(|error| matches!(error, RequestError::Attribute { found: 3, .. }))),
         ("N13", Refusal::Check(|error| matches!(error, RequestError::Count { found: 476, max: 474, .. }))),

@@ -85,7 +85,7 @@ fn spread(effort: &Effort) -> anyhow::Result<()> {
         let runtime = runtime()?;
         let server = Server::start(setup(1), Mirror::default(), AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST), None)?;
         let sent = Arc::new(Mutex::new(Vec::new()));
-        let images = SocketAddrV4::new(Ipv4Addr::LOCALHOST, server.io_port());
+        let images = SocketAddrV4::new(Ipv4Addr::LOCALHOST, server.io_port);
         let tap = {
             let sent = Arc::clone(&sent);
             Tap::new(move |passed| {
@@ -132,7 +132,9 @@ fn trips(effort: &Effort) -> anyhow::Result<()> {
             let start = Instant::now();
             connection.set_image(1, &[mark; SIZE as usize])?;
             let is_back = |image: &[u8]| image.first() == Some(&mark);
-            runtime.block_on(connection.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))));
+            runtime.block_on(
+                connection.views.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))),
+            );
             times.push(start.elapsed().as_secs_f64() * 1000.0);
             // The next round starts at another time within the interval.
             thread::sleep(Duration::from_micros(fastrand::u64(..u64::try_from(rpi.as_micros())?)));
@@ -199,7 +201,7 @@ fn many_connections(effort: &Effort) -> anyhow::Result<()> {
         None,
     )?;
     hold_connections("our adapter", server.address(), effort)?;
-    let ended = server.with(|adapter, _| adapter.application().timed_out);
+    let ended = server.with(|adapter, _| adapter.application.timed_out);
     println!("  our adapter: {ended} connections timed out there; goal 0 {}", verdict(ended == 0));
     ensure!(ended == 0, "the adapter missed images");
 
@@ -240,7 +242,7 @@ fn hold_connections(name: &str, target: SocketAddrV4, effort: &Effort) -> anyhow
     thread::sleep(effort.many);
     let (mut sent, mut received, mut lost, mut skipped) = (0, 0, 0, 0);
     for connection in &connections {
-        let view = connection.view();
+        let view = connection.views.now();
         ensure!(view.state == State::Open && view.generation == 1, "{:?} {:?}", view.state, view.last_error);
         let statistics = view.statistics;
         sent += statistics.sent;

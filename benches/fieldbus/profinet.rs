@@ -139,7 +139,7 @@ pub fn controller() -> anyhow::Result<()> {
     let used = cpu()?;
     thread::sleep(time()?);
     let used = cpu()? - used;
-    ensure!(connection.view().generation == 1, "the connection was lost: {:?}", connection.view().last_error);
+    ensure!(connection.views.now().generation == 1, "the connection was lost: {:?}", connection.views.now().last_error);
     println!("armctl figures {connect} {used}");
     runtime.block_on(connection.close())?;
     Ok(())

@@ -87,3 +87,8 @@ pub trait Session {
     /// earlier may be dropped.
     fn handle(&mut self, now: Now, bytes: &[u8]);
 }
+
+/// Refuses with `error` if `is_refused`.
+fn refuse_if<E>(is_refused: bool, error: E) -> Result<(), E> {
+    if is_refused { Err(error) } else { Ok(()) }
+}

@@ -73,11 +73,8 @@ pub enum EncodeError {
         encoding: Encoding,
     },
     /// A NUL, which would end the text on the controller.
-    #[error("character {position} of the text is a NUL, which would end the text")]
-    Nul {
-        /// Position in characters, from 1.
-        position: usize,
-    },
+    #[error("character {0} of the text is a NUL, which would end the text")]
+    Nul(usize),
     /// The text is longer than its field.
     #[error("the text has {len} bytes in {encoding}, but at most {max} are possible")]
     TooLong {
@@ -151,7 +148,7 @@ impl Encoding {
     /// Encodes text for a NUL-terminated field of `max` bytes.
     pub fn encode_within(self, text: &str, max: usize) -> Result<Vec<u8>, EncodeError> {
         if let Some(index) = text.chars().position(|c| c == '\0') {
-            return Err(EncodeError::Nul { position: index + 1 });
+            return Err(EncodeError::Nul(index + 1));
         }
         let bytes = self.encode(text)?;
         if bytes.len() > max {
@@ -384,7 +381,7 @@ mod tests {
         assert!(!Encoding::Utf8.fits("てすと", 6));
         let error = Encoding::Utf8.encode_within("てすと", 8).unwrap_err();
         assert_eq!(error.to_string(), "the text has 9 bytes in utf-8, but at most 8 are possible");
-        assert_eq!(Encoding::Utf8.encode_within("A\0", 8), Err(EncodeError::Nul { position: 2 }));
+        assert_eq!(Encoding::Utf8.encode_within("A\0", 8), Err(EncodeError::Nul(2)));
     }
 
     #[test]

@@ -26,17 +26,11 @@ pub enum Problem {
         present: usize,
     },
     /// Bytes follow after the last field.
-    #[error("{extra} more bytes follow")]
-    Trailing {
-        /// Number of extra bytes.
-        extra: usize,
-    },
+    #[error("{0} more bytes follow")]
+    Trailing(usize),
     /// The field has a value that is not valid.
-    #[error("is {found:#04x}")]
-    Value {
-        /// The value.
-        found: u32,
-    },
+    #[error("is {0:#04x}")]
+    Value(u32),
     /// The value contradicts another part of the message.
     #[error("is {found:#04x}, not {expected:#04x}")]
     Differs {
@@ -56,7 +50,7 @@ impl WireError {
     }
 
     pub(crate) fn value(field: &'static str, offset: usize, found: impl Into<u32>) -> Self {
-        Self { field, offset, problem: Problem::Value { found: found.into() } }
+        Self { field, offset, problem: Problem::Value(found.into()) }
     }
 }
 
@@ -131,7 +125,7 @@ impl<'a> Reader<'a> {
     pub fn end(&self, field: &'static str) -> Result<(), WireError> {
         match self.left() {
             0 => Ok(()),
-            extra => Err(WireError { field, offset: self.at, problem: Problem::Trailing { extra } }),
+            extra => Err(WireError { field, offset: self.at, problem: Problem::Trailing(extra) }),
         }
     }
 

@@ -45,8 +45,18 @@ pub mod udp;
 
 use std::fmt::Display;
 use std::io;
+use std::time::Duration;
 
 pub use armctl_files::{plain, this_program};
+
+/// Pauses before attempts to open a connection again after a loss. The last pause repeats.
+const BACKOFF: [Duration; 5] = [
+    Duration::from_millis(250),
+    Duration::from_millis(500),
+    Duration::from_secs(1),
+    Duration::from_secs(2),
+    Duration::from_secs(5),
+];
 
 /// Returns the error of a byte stream whose other end was closed or unplugged.
 fn closed_error(why: impl Display) -> io::Error {
@@ -54,7 +64,6 @@ fn closed_error(why: impl Display) -> io::Error {
 }
 
 /// Refuses with `error` if `is_refused`.
-#[cfg(feature = "fieldbus")]
 fn refuse_if<E>(is_refused: bool, error: E) -> Result<(), E> {
     if is_refused { Err(error) } else { Ok(()) }
 }

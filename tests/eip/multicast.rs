@@ -34,13 +34,13 @@ async fn every_subscriber_receives_a_multicast_group() {
     owner.set_image(1, &[0x5A; 48]).unwrap();
     for connection in [&mut owner, &mut listener] {
         let is_back = |image: &[u8]| image == [0xA5; 48];
-        let view = connection.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))).await;
+        let view = connection.views.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))).await;
         assert_eq!(view.generation, 1, "{view:?}");
     }
     listener.close().await.unwrap();
     // The scanner continues to receive the group as long as one connection needs it.
-    let received = owner.view().statistics.received;
-    owner.until(|view| view.statistics.received > received + 2).await;
+    let received = owner.views.now().statistics.received;
+    owner.views.until(|view| view.statistics.received > received + 2).await;
     owner.close().await.unwrap();
 }
 

@@ -72,9 +72,9 @@ async fn our_scanner_owns_ciplink() {
     adapter.set_input(100, &[0x77; 48]).unwrap();
     connection.set_image(1, &[0x5A; 48]).unwrap();
     let run = connection.set_run(1, true).unwrap();
-    let view = connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [0x77; 48])).await;
+    let view = connection.views.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [0x77; 48])).await;
     assert_eq!(view.statistics.size_error, 0);
-    connection.until(|view| view.sent >= run).await;
+    connection.views.until(|view| view.sent >= run).await;
     loop {
         let output = adapter.output(150).unwrap();
         if output.run && output.data == [0x5A; 48] {
@@ -104,7 +104,7 @@ async fn our_scanner_listens_to_ciplink() {
     let inputs =
         Settings { role: Role::InputOnly, output: 238, output_size: 0, resting: vec![], ..with_long_timeout() };
     let mut connection = scanner.open(v4(adapter.addr()), inputs, Tap::default()).await.unwrap();
-    let view = connection.until(|view| view.input.is_some()).await;
+    let view = connection.views.until(|view| view.input.is_some()).await;
     assert_eq!(*view.input.unwrap().image, [9; 48]);
     connection.close().await.unwrap();
 }
@@ -165,8 +165,8 @@ fn st_ethernet_ip_owns_our_adapter() {
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "a5".repeat(48), "{error}");
     server.with(|adapter, _| {
-        assert_eq!(adapter.application().image, [0x5A; 48]);
-        assert!(adapter.application().run);
+        assert_eq!(adapter.application.image, [0x5A; 48]);
+        assert!(adapter.application.run);
     });
 }
 
@@ -189,7 +189,7 @@ fn pycomm3_asks_our_adapter() {
     assert_eq!(found["image"]["value"], "00".repeat(48));
     assert!(found["nothing"]["error"].as_str().unwrap().starts_with("Destination unknown"), "{found}");
     assert_eq!(found["write"]["error"], serde_json::Value::Null, "{found}");
-    assert_eq!(server.with(|adapter, _| adapter.application().image.clone()), [b'Z'; 48], "nobody owns it");
+    assert_eq!(server.with(|adapter, _| adapter.application.image.clone()), [b'Z'; 48], "nobody owns it");
     assert_eq!(found["refused"]["error"], "Attribute not settable");
 }
 
@@ -209,7 +209,7 @@ async fn tshark_decodes_recorded_packets() {
     let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
     let mut connection = scanner.open(server.address(), with_long_timeout(), tap.clone()).await.unwrap();
     connection.set_run(1, true).unwrap();
-    connection.until(|view| view.statistics.received >= 3).await;
+    connection.views.until(|view| view.statistics.received >= 3).await;
     connection.ask("the size", &Message::get(4, 150, 4)).await.unwrap();
     connection.close().await.unwrap();
     let large = Settings { input_size: 600, ..with_long_timeout() };

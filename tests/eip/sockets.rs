@@ -39,14 +39,14 @@ async fn exchanges_images_and_messages() {
     let server = serve(setup());
     let scanner = Scanner::start(LOOPBACK).unwrap();
     let mut connection = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
-    let generation = connection.view().generation;
+    let generation = connection.views.now().generation;
     // In this order, the image that comes back is an answer to both changes.
     connection.set_run(generation, true).unwrap();
     let change = connection.set_image(generation, &[0x5A; 48]).unwrap();
     let is_back = |image: &[u8]| image == [0xA5; 48];
-    let view = connection.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))).await;
+    let view = connection.views.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))).await;
     assert!(view.sent >= change);
-    assert!(server.with(|adapter, _| adapter.application().run));
+    assert!(server.with(|adapter, _| adapter.application.run));
 
     let answer = connection.ask("the size", &Message::get(4, 150, 4)).await.unwrap();
     assert_eq!(answer, Answer { status: Status::OK, data: vec![48, 0] });
@@ -55,7 +55,7 @@ async fn exchanges_images_and_messages() {
 
     connection.close().await.unwrap();
     assert_eq!(server.with(|adapter, _| adapter.peers().count()), 0);
-    assert!(server.with(|adapter, _| !adapter.application().run));
+    assert!(server.with(|adapter, _| !adapter.application.run));
 }
 
 #[tokio::test]
@@ -100,7 +100,7 @@ async fn survey_reads_assemblies_without_a_connection() {
     assert_eq!((found.connectable, found.attempts), (Some(expected), Vec::new()));
     assert_eq!(probe::survey(&mut client, &[absent]).await.unwrap().connectable, None);
     assert_eq!(probe::assembly(&mut client, 7).await.unwrap(), AssemblyPresence::Absent);
-    let events = server.with(|adapter, _| adapter.application().events.len());
+    let events = server.with(|adapter, _| adapter.application.events.len());
     assert_eq!(events, 0, "nothing was opened on the way");
     client.close().await;
 }
@@ -117,7 +117,8 @@ async fn several_connections_share_a_socket() {
     }
     for (connection, mark) in connections.iter_mut().zip(1u8..) {
         let expected = [!mark; 48];
-        let view = connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == expected)).await;
+        let view =
+            connection.views.until(|view| view.input.as_ref().is_some_and(|input| *input.image == expected)).await;
         assert_eq!(view.state, State::Open);
     }
 }
@@ -131,9 +132,9 @@ async fn survives_a_bad_network() {
     let mut connection = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
     for mark in 1..20 {
         connection.set_image(1, &[mark; 48]).unwrap();
-        connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!mark; 48])).await;
+        connection.views.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!mark; 48])).await;
     }
-    let view = connection.until(|view| view.statistics.lost > 0 && view.statistics.stale > 0).await;
+    let view = connection.views.until(|view| view.statistics.lost > 0 && view.statistics.stale > 0).await;
     assert_eq!((view.state, view.generation), (State::Open, 1));
 }
 
@@ -173,15 +174,15 @@ async fn reopens_a_lost_link() {
     let settings = Settings { multiplier: Multiplier::of(64).unwrap(), ..quick() };
     let mut connection = scanner.open(server.address(), settings, Tap::default()).await.unwrap();
     connection.set_image(1, &[7; 48]).unwrap();
-    connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!7; 48])).await;
+    connection.views.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!7; 48])).await;
     server.with(|adapter, _| adapter.set_fault(Some(AdapterFault::Stall)));
-    let view = connection.until(|view| view.state == State::Lost).await;
-    assert_eq!(view.last_error, Some(EipError::Silent { after: 640 * MS }));
+    let view = connection.views.until(|view| view.state == State::Lost).await;
+    assert_eq!(view.last_error, Some(EipError::Silent(640 * MS)));
     assert_eq!(connection.set_image(1, &[8; 48]), Err(EipError::Outdated));
     server.with(|adapter, _| adapter.set_fault(None));
-    connection.until(|view| view.generation == 2 && view.state == State::Open).await;
+    connection.views.until(|view| view.generation == 2 && view.state == State::Open).await;
     let rest: Vec<u8> = image_after_loss(&resting(), &[7; 48]).iter().map(|byte| !byte).collect();
-    connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == *rest)).await;
+    connection.views.until(|view| view.input.as_ref().is_some_and(|input| *input.image == *rest)).await;
 }
 
 #[tokio::test]
@@ -202,7 +203,7 @@ async fn reports_a_reset_and_uses_a_new_connection() {
     let message = Message::get(1, 1, 1);
     assert_eq!(client.ask("the vendor", &message).await.unwrap().data, [0x7C, 0x02]);
     server.with(|adapter, _| adapter.set_fault(Some(AdapterFault::Reset)));
-    assert_eq!(client.ask("the vendor", &message).await, Err(EipError::Hangup { what: "the vendor" }));
+    assert_eq!(client.ask("the vendor", &message).await, Err(EipError::Hangup("the vendor")));
     server.with(|adapter, _| adapter.set_fault(None));
     assert_eq!(client.ask("the vendor", &message).await.unwrap().data, [0x7C, 0x02]);
     client.close().await;
@@ -237,10 +238,10 @@ async fn tap_receives_all_packets() {
     };
     let scanner = Scanner::start(LOOPBACK).unwrap();
     let mut connection = scanner.open(server.address(), quick(), tap).await.unwrap();
-    connection.until(|view| view.input.is_some()).await;
+    connection.views.until(|view| view.input.is_some()).await;
     connection.close().await.unwrap();
     let seen = seen.lock().unwrap();
-    let images = SocketAddrV4::new(LOOPBACK, server.io_port());
+    let images = SocketAddrV4::new(LOOPBACK, server.io_port);
     assert!(seen.iter().any(|(tcp, _, to)| *tcp && *to == server.address()));
     assert!(seen.iter().any(|(tcp, from, _)| *tcp && *from == server.address()));
     assert!(seen.iter().any(|(tcp, _, to)| !tcp && *to == images));
@@ -265,7 +266,7 @@ async fn probe_finds_instances_and_sizes() {
         assert_eq!(findings.connectable, Some(found), "{:?}", findings.attempts);
     }
     // The probe opened no connection, not even for a short time.
-    assert_eq!(server.with(|adapter, _| adapter.application().events.clone()), []);
+    assert_eq!(server.with(|adapter, _| adapter.application.events.clone()), []);
     client.close().await;
 }
 

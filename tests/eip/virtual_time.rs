@@ -32,15 +32,15 @@ fn refusal(world: &World) -> Status {
 #[test]
 fn exchanges_images_in_both_directions() {
     let mut world = World::open(setup(), settings(), "");
-    assert_eq!(world.adapter.application().image, resting());
-    assert!(!world.adapter.application().run, "it begins idle");
+    assert_eq!(world.adapter.application.image, resting());
+    assert!(!world.adapter.application.run, "it begins idle");
     let generation = world.view().generation;
     let change = world.originator.set_image(generation, &image(3)).unwrap();
     let run = world.originator.set_run(generation, true).unwrap();
     assert!(change < run && world.view().sent < change);
     world.run_until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *native_order(&image(3))));
     assert_eq!(world.view().sent, run);
-    assert!(world.adapter.application().run);
+    assert!(world.adapter.application.run);
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn survives_a_bad_network() {
             });
         }
         // An old image never replaces a newer image, although the network changes the order of packets.
-        let history = &world.adapter.application().history;
+        let history = &world.adapter.application.history;
         let marks: Vec<u8> = history.iter().map(|(image, _)| image[0]).filter(|mark| (1..100).contains(mark)).collect();
         assert!(marks.is_sorted(), "seed {seed}: {marks:?}");
         let view = world.view();
@@ -112,9 +112,9 @@ fn close_sends_idle_and_is_confirmed() {
     assert_eq!(world.originator.set_image(generation, &image(1)), Err(EipError::Ended));
     world.run_until(1000 * MS, |world| world.originator.is_finished());
     assert_eq!((world.view().state, world.view().last_error), (State::Closed, None));
-    assert!(!world.adapter.application().run, "the last image was idle");
+    assert!(!world.adapter.application.run, "the last image was idle");
     world.run(100 * MS);
-    let events = &world.adapter.application().events;
+    let events = &world.adapter.application.events;
     assert!(matches!(events[..], [Event::Opened(_), Event::Closed(_)]), "{events:?}");
     let last = &world.frames.last().unwrap().1;
     assert_eq!(last[0], 0x66, "the session is taken leave of");
@@ -128,16 +128,16 @@ fn reopened_device_starts_with_resting_image() {
     world.run(200 * MS);
     world.cable = false;
     world.run_until(400 * MS, |world| world.view().state == State::Lost);
-    assert_eq!(world.view().last_error, Some(EipError::Silent { after: 320 * MS }));
+    assert_eq!(world.view().last_error, Some(EipError::Silent(320 * MS)));
     assert_eq!(world.originator.set_image(1, &image(8)), Err(EipError::Outdated));
-    let before = world.adapter.application().history.len();
+    let before = world.adapter.application.history.len();
     world.run(30_000 * MS);
-    assert!(matches!(world.adapter.application().events.last(), Some(Event::TimedOut(_))));
+    assert!(matches!(world.adapter.application.events.last(), Some(Event::TimedOut(_))));
     world.cable = true;
     world.run_until(20_000 * MS, |world| world.view().generation == 2);
     world.run(1000 * MS);
     assert_eq!(world.view().state, State::Open);
-    let shown = &world.adapter.application().history[before..];
+    let shown = &world.adapter.application.history[before..];
     assert_eq!(shown, [(image_after_loss(&resting(), &image(7)), false)], "nothing of before goes on again");
     assert_eq!(world.originator.set_image(1, &image(8)), Err(EipError::Outdated));
     assert!(world.originator.set_image(2, &image(8)).is_ok());
@@ -176,7 +176,7 @@ fn opened(frame: &[u8]) -> Option<Open> {
 fn images_continue_without_tcp() {
     let mut world = World::open(setup(), settings(), "");
     world.tcp = false;
-    world.originator.disconnected(&EipError::Hangup { what: "the test" });
+    world.originator.disconnected(&EipError::Hangup("the test"));
     world.run(60_000 * MS);
     assert_eq!((world.view().state, world.view().generation), (State::Open, 1));
     world.tcp = true;
@@ -194,7 +194,7 @@ fn scanner_waits_ten_seconds_for_the_first_image() {
     world.run(9_900 * MS);
     assert_eq!((world.view().state, world.view().input), (State::Open, None));
     world.run_until(200 * MS, |world| world.view().state == State::Lost);
-    assert_eq!(world.view().last_error, Some(EipError::Silent { after: 10_000 * MS }));
+    assert_eq!(world.view().last_error, Some(EipError::Silent(10_000 * MS)));
 }
 
 #[test]
@@ -252,7 +252,7 @@ fn silent_adapter_ends_the_opening() {
     type IsIt = fn(&EipError) -> bool;
     let cases: [(AdapterFault, IsIt); 3] = [
         (AdapterFault::Mute, |last_error| matches!(last_error, EipError::NoAnswer { what: "RegisterSession", .. })),
-        (AdapterFault::Reset, |last_error| matches!(last_error, EipError::Hangup { what: "ForwardOpen" })),
+        (AdapterFault::Reset, |last_error| matches!(last_error, EipError::Hangup("ForwardOpen"))),
         (AdapterFault::Garbage, |last_error| matches!(last_error, EipError::Malformed { what: "ForwardOpen", .. })),
     ];
     for (fault, is_it) in cases {
@@ -288,7 +288,7 @@ fn closes_an_opening_of_unknown_outcome() {
     world.cable = true;
     world.run_until(10_000 * MS, |world| world.originator.is_finished());
     assert!(matches!(world.view().last_error, Some(EipError::NoAnswer { what: "ForwardOpen", .. })));
-    let events = &world.adapter.application().events;
+    let events = &world.adapter.application.events;
     assert!(matches!(events[..], [Event::Opened(_), Event::Closed(_)]), "{events:?}");
 }
 
@@ -406,7 +406,7 @@ fn accepts_one_owner_and_many_listeners() {
     world.originator.close();
     world.run_until(1000 * MS, |world| world.originator.is_finished());
     assert_eq!(world.adapter.peers().count(), 0);
-    let events = &world.adapter.application().events;
+    let events = &world.adapter.application.events;
     assert!(matches!(events[2..], [Event::Closed(_), Event::Closed(_)]), "{events:?}");
 }
 
@@ -479,7 +479,7 @@ fn message_writes_an_image_without_an_owner() {
     assert_eq!(set(&[7; 47]), Status::general(0x13));
     assert_eq!(set(&[7; 49]), Status::general(0x15));
     assert_eq!(set(&[7; 48]), Status::OK);
-    assert_eq!(adapter.application().history.len(), 1);
+    assert_eq!(adapter.application.history.len(), 1);
 }
 
 #[test]
@@ -488,10 +488,10 @@ fn ignores_images_of_other_senders() {
     world.run(100 * MS);
     let mut forged = world.images_out.last().unwrap().1.clone();
     forged[10] = 0xF0;
-    let before = world.adapter.application().history.clone();
+    let before = world.adapter.application.history.clone();
     let stranger = std::net::SocketAddrV4::new([10, 0, 0, 9].into(), 2222);
     world.adapter.receive_datagram(world.now, stranger, &forged);
-    assert_eq!(world.adapter.application().history, before);
+    assert_eq!(world.adapter.application.history, before);
     assert!(!world.originator.expects(ORIGINATOR_ADDRESS, 0x1000));
 }
 

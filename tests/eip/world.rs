@@ -287,7 +287,7 @@ impl World {
             }
             Packet::HangUp(connection) if connection == current => {
                 self.adapter.disconnected(connection.into());
-                self.originator.disconnected(&EipError::Hangup { what: "the test" });
+                self.originator.disconnected(&EipError::Hangup("the test"));
             }
             Packet::ImageOut(to, bytes) if to == SocketAddrV4::new(ADAPTER_ADDRESS, IO_PORT) => {
                 self.adapter.receive_datagram(self.now, SocketAddrV4::new(ORIGINATOR_ADDRESS, IO_PORT), &bytes);

@@ -196,35 +196,35 @@ fn others_controller() {
                 opened => break opened.unwrap(),
             }
         };
-        println!("open after {:?}: {:?}", begin.elapsed(), connection.view().details.device);
+        println!("open after {:?}: {:?}", begin.elapsed(), connection.views.now().details.device);
         for round in 0..3u8 {
             let mut image = vec![round + 1; 48];
-            let generation = connection.view().generation;
+            let generation = connection.views.now().generation;
             connection.set_image(generation, &image).unwrap();
             let shown = image.clone();
-            connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == *shown)).await;
-            assert_eq!(connection.view().generation, 1);
+            connection.views.until(|view| view.input.as_ref().is_some_and(|input| *input.image == *shown)).await;
+            assert_eq!(connection.views.now().generation, 1);
             // The diagnosis appears and disappears.
             for (word, kind) in [(0x41, 0x01), (0, 0x0C)] {
                 image[..2].fill(word);
                 connection.set_image(generation, &image).unwrap();
-                let alarms = connection.view().statistics.alarms;
-                connection.until(|view| view.statistics.alarms > alarms || view.state != State::Open).await;
+                let alarms = connection.views.now().statistics.alarms;
+                connection.views.until(|view| view.statistics.alarms > alarms || view.state != State::Open).await;
                 let alarm = connection.take_alarm().expect("an alarm came");
                 println!("{}", alarm.describe());
                 assert!(alarm.kind == kind || kind == 0x0C, "{alarm:?}");
             }
         }
-        let counted = connection.view().statistics;
+        let counted = connection.views.now().statistics;
         println!("{counted:?}");
-        assert_eq!((connection.view().generation, counted.losses, counted.stale), (1, 0, 0));
+        assert_eq!((connection.views.now().generation, counted.losses, counted.stale), (1, 0, 0));
 
         // A suspended program sends nothing. Both ends close the connection and then open it again.
         let pause = format!("kill -STOP {0}; sleep 4; kill -CONT {0}", std::process::id());
         let mut pause = Command::new("sh").args(["-c", &pause]).spawn().unwrap();
-        let lost = connection.until(|view| view.statistics.losses == 1).await;
+        let lost = connection.views.until(|view| view.statistics.losses == 1).await;
         println!("after a pause: {:?}", lost.last_error);
-        connection.until(|view| view.state == State::Open && view.generation == 2).await;
+        connection.views.until(|view| view.state == State::Open && view.generation == 2).await;
         pause.wait().unwrap();
         connection.close().await.unwrap();
 
@@ -282,14 +282,14 @@ fn our_device() {
         im0: Im0 { order_id: "RCX340".to_owned(), software: ('V', 1, 2, 3), ..Im0::default() },
     };
     let server = Server::start(&interface, setup, Echo::default()).unwrap();
-    assert!(matches!(Network::shared("pd0"), Err(ProfinetError::PortTaken { .. })));
+    assert!(matches!(Network::shared("pd0"), Err(ProfinetError::PortTaken(_))));
     loop {
         // If the first word is 0x55, the controller requests that the device goes to stop.
-        let wants_stop = server.with(|device, _| device.application().0.first() == Some(&0x55));
+        let wants_stop = server.with(|device, _| device.application.0.first() == Some(&0x55));
         if wants_stop {
             server.with(|device, _| device.set_fault(Some(Fault::Stop)));
             // The fault stays until the controller has received the state and has disconnected.
-            while server.with(|device, _| device.application().0.first() == Some(&0x55)) {
+            while server.with(|device, _| device.application.0.first() == Some(&0x55)) {
                 std::thread::park_timeout(Duration::from_millis(5));
             }
             server.with(|device, _| device.set_fault(None));

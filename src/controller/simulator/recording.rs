@@ -68,7 +68,8 @@ pub(crate) struct Replay {
     began: Now,
     /// The last recorded answer to each request.
     answers: Answers,
-    is_silent: bool,
+    /// Whether the controller did not answer at this time.
+    pub(crate) is_silent: bool,
 }
 
 impl Replay {
@@ -113,11 +114,6 @@ impl Replay {
         self.answers.retain(|request, _| !is_invalid(request));
     }
 
-    /// Whether the controller did not answer at this time.
-    pub(crate) fn is_silent(&self) -> bool {
-        self.is_silent
-    }
-
     /// Next sample of the present pass.
     fn next_sample(&self) -> Option<&Sample> {
         let Recording { samples, pass } = &self.recording;
@@ -149,7 +145,7 @@ mod tests {
     fn at(replay: &mut Replay, now: Now) -> (Option<String>, Option<String>, bool) {
         while replay.take(now).is_some() {}
         let answer = |request| replay.answer(request).map(ToOwned::to_owned);
-        (answer("a"), answer("b"), replay.is_silent())
+        (answer("a"), answer("b"), replay.is_silent)
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! File services: names, lists, and transfer frames (FS and DX 3.4, 3.2.3 to 3.2.6).
 
+use crate::refuse_if;
 use std::fmt;
 use std::str::FromStr;
 
@@ -248,9 +249,7 @@ pub fn split_list(data: &[u8]) -> Result<Vec<&[u8]>, ListError> {
     let lines = data.split(|byte| matches!(byte, b'\r' | b'\n' | 0)).map(<[u8]>::trim_ascii_end);
     let mut names = Vec::new();
     for name in lines.filter(|line| !line.is_empty()) {
-        if name.len() > MAX_DATA {
-            return Err(ListError { line: names.len() + 1, len: name.len() });
-        }
+        refuse_if(name.len() > MAX_DATA, ListError { line: names.len() + 1, len: name.len() })?;
         names.push(name);
     }
     Ok(names)
@@ -261,9 +260,7 @@ pub fn check_name(name: &[u8]) -> Result<(), FileNameError> {
     if name == BATCH_BACKUP_PATH {
         return Ok(());
     }
-    if name.len() > MAX_DATA {
-        return Err(FileNameError::TooLong { len: name.len() });
-    }
+    refuse_if(name.len() > MAX_DATA, FileNameError::TooLong { len: name.len() })?;
     let shown = || name.escape_ascii().to_string();
     if name.contains(&0) {
         return Err(FileNameError::Nul { name: shown() });
@@ -275,9 +272,7 @@ pub fn check_name(name: &[u8]) -> Result<(), FileNameError> {
         return Err(FileNameError::Control { name: shown() });
     }
     let stem = stem_len(name);
-    if stem == 0 {
-        return Err(FileNameError::Empty);
-    }
+    refuse_if(stem == 0, FileNameError::Empty)?;
     if stem + 1 >= name.len() { Err(FileNameError::Extension { name: shown() }) } else { Ok(()) }
 }
 

@@ -7,6 +7,7 @@ use super::files::{self, FileNameError};
 use super::table::{Action, Field, Kind, Plural, RiskRule, Row, Service, service, total};
 use super::wire::{Division, MAX_DATA, RequestFrame};
 use crate::Risk;
+use crate::refuse_if;
 
 /// A request without a request id.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -226,9 +227,7 @@ impl Request {
             Division::Robot => RequestError::Command { command: self.command },
             Division::File => RequestError::FileService { found: self.service },
         })?;
-        if !row.availability.on(model) {
-            return Err(RequestError::Model { command: self.command, name: row.name, model });
-        }
+        refuse_if(!row.availability.on(model), RequestError::Model { command: self.command, name: row.name, model })?;
         let service = row.service(self.service).ok_or_else(|| RequestError::Service {
             command: self.command,
             name: row.name,
@@ -287,12 +286,8 @@ impl Request {
         };
         let (count, elements) = self.data.split_first_chunk::<4>().ok_or_else(|| size_error("4 or more".to_owned()))?;
         let count = u32::from_le_bytes(*count);
-        if count == 0 || count > u32::from(max) {
-            return Err(RequestError::Count { name: row.name, found: count, max });
-        }
-        if even && count % 2 == 1 {
-            return Err(RequestError::OddCount { name: row.name, found: count, max });
-        }
+        refuse_if(count == 0 || count > u32::from(max), RequestError::Count { name: row.name, found: count, max })?;
+        refuse_if(even && count % 2 == 1, RequestError::OddCount { name: row.name, found: count, max })?;
         if u32::from(self.instance) + count - 1 > u32::from(last) {
             return Err(RequestError::Overrun { name: row.name, first: self.instance, count, last });
         }

@@ -4,6 +4,7 @@
 //! sub-header. Parsing accepts what real controllers send: it ignores reserved bytes and padding bytes. Encoding
 //! follows the manual.
 
+use crate::refuse_if;
 use std::ops::Range;
 
 use thiserror::Error;
@@ -72,29 +73,17 @@ impl Division {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum WireError {
     /// The datagram is too short for header and sub-header.
-    #[error("{len} bytes are too short: a frame has at least {HEADER_LEN}")]
-    Truncated {
-        /// Bytes received.
-        len: usize,
-    },
+    #[error("{0} bytes are too short: a frame has at least {HEADER_LEN}")]
+    Truncated(usize),
     /// The datagram is longer than any valid frame.
-    #[error("{len} bytes are too long: a frame has at most {MAX_FRAME}")]
-    Oversized {
-        /// Bytes received.
-        len: usize,
-    },
+    #[error("{0} bytes are too long: a frame has at most {MAX_FRAME}")]
+    Oversized(usize),
     /// The identifier is not YERC.
-    #[error("identifier at offset 0 is {found:02x?}, not \"YERC\"")]
-    Identifier {
-        /// The value found.
-        found: [u8; 4],
-    },
+    #[error("identifier at offset 0 is {0:02x?}, not \"YERC\"")]
+    Identifier([u8; 4]),
     /// The header size is not 0x20.
-    #[error("header size at offset 4 is {found:#06x}, not 0x0020")]
-    HeaderSize {
-        /// The value found.
-        found: u16,
-    },
+    #[error("header size at offset 4 is {0:#06x}, not 0x0020")]
+    HeaderSize(u16),
     /// The size field does not match the size of the data.
     #[error("data size at offset 6 is {stated}, but {present} bytes follow the header")]
     DataSize {
@@ -104,17 +93,11 @@ pub enum WireError {
         present: usize,
     },
     /// The division is neither robot (1) nor file (2).
-    #[error("processing division at offset 9 is {found}, neither 1 (robot) nor 2 (file)")]
-    Division {
-        /// The value found.
-        found: u8,
-    },
+    #[error("processing division at offset 9 is {0}, neither 1 (robot) nor 2 (file)")]
+    Division(u8),
     /// The ACK flag is neither 0 nor 1.
-    #[error("ACK at offset 10 is {found}, neither 0 nor 1")]
-    Ack {
-        /// The value found.
-        found: u8,
-    },
+    #[error("ACK at offset 10 is {0}, neither 0 nor 1")]
+    Ack(u8),
 }
 
 /// Common part of both sub-headers.
@@ -129,34 +112,24 @@ struct Header {
 impl Header {
     fn parse(bytes: &[u8]) -> Result<(Self, &[u8]), WireError> {
         let len = bytes.len();
-        if len < HEADER_LEN {
-            return Err(WireError::Truncated { len });
-        }
-        if len > MAX_FRAME {
-            return Err(WireError::Oversized { len });
-        }
+        refuse_if(len < HEADER_LEN, WireError::Truncated(len))?;
+        refuse_if(len > MAX_FRAME, WireError::Oversized(len))?;
         let found = array(bytes, field::IDENTIFIER);
-        if &found != IDENTIFIER {
-            return Err(WireError::Identifier { found });
-        }
+        refuse_if(&found != IDENTIFIER, WireError::Identifier(found))?;
         let found = u16::from_le_bytes(array(bytes, field::HEADER_SIZE));
-        if usize::from(found) != HEADER_LEN {
-            return Err(WireError::HeaderSize { found });
-        }
+        refuse_if(usize::from(found) != HEADER_LEN, WireError::HeaderSize(found))?;
         let data = &bytes[HEADER_LEN..];
         let stated = usize::from(u16::from_le_bytes(array(bytes, field::DATA_SIZE)));
-        if stated != data.len() {
-            return Err(WireError::DataSize { stated, present: data.len() });
-        }
+        refuse_if(stated != data.len(), WireError::DataSize { stated, present: data.len() })?;
         let division = match bytes[field::DIVISION] {
             1 => Division::Robot,
             2 => Division::File,
-            found => return Err(WireError::Division { found }),
+            found => return Err(WireError::Division(found)),
         };
         let ack = match bytes[field::ACK] {
             0 => false,
             1 => true,
-            found => return Err(WireError::Ack { found }),
+            found => return Err(WireError::Ack(found)),
         };
         let block = u32::from_le_bytes(array(bytes, field::BLOCK));
         Ok((Self { division, ack, id: bytes[field::ID], block }, data))
@@ -361,6 +334,6 @@ mod tests {
 
     #[test]
     fn error_contains_the_length_of_a_short_datagram() {
-        assert_eq!(AnswerFrame::parse(&[0; 31]), Err(WireError::Truncated { len: 31 }));
+        assert_eq!(AnswerFrame::parse(&[0; 31]), Err(WireError::Truncated(31)));
     }
 }

@@ -113,49 +113,31 @@ const GROUPS: [(u16, &str); 17] = [
 
 const LINK_CAUSES: &[&str] = &[
     "the master closed the connection or stopped sending",
-    "a cable, a switch or the power supply of the network \
-                                                              failed",
+    "a cable, a switch or the power supply of the network failed",
 ];
 const LINK_REMEDIES: &[&str] =
     &["use a session to keep the connection open", "open the connection again, then reset the alarm"];
 const UNIT_REMEDIES: &[&str] = &["switch the controller off and on", "check the option unit and its settings"];
 
 /// Alarms that the sources name, with causes and remedies.
+#[rustfmt::skip] // Eight lines per row would hide the table.
 pub const KNOWN: [Known; 19] = [
-    Known {
-        alarm: Alarm::new(2, 334),
-        text: "over soft limit",
-        causes: &["the target or the path to it is outside the range of an axis"],
-        remedies: &["check the point and the soft limits", "jog the axis back into its range"],
-    },
-    Known {
-        alarm: INPUT_FORMAT,
-        text: "input format error",
-        causes: &["a word of the command has an invalid value, for example both position outputs at once"],
-        remedies: &["compare the sent words with the manual section of the command; `armctl decode yrcx` shows the \
-                     words"],
-    },
-    Known {
-        alarm: Alarm::new(12, 75),
-        text: "illegal remote command",
-        causes: &["the code in WI0 does not exist"],
-        remedies: &["check the code, and that words arrive in the correct order and byte order"],
-    },
-    Known {
-        alarm: Alarm::new(12, 76),
-        text: "remote command not enabled",
-        causes: &[
-            "the programming box has control: the controller accepts only commands that read (references)",
-            "a safety setting disables the dedicated inputs and all remote commands",
-        ],
-        remedies: &["give control back at the programming box", "check mode and safety settings"],
-    },
-    Known {
-        alarm: STOP_INPUT,
-        text: "stopped by the stop input",
-        causes: &["SI(06) was switched off: the motion was stopped"],
-        remedies: &["switch SI(06) on again before the next motion"],
-    },
+    known(Alarm::new(2, 334), "over soft limit",
+        &["the target or the path to it is outside the range of an axis"],
+        &["check the point and the soft limits", "jog the axis back into its range"]),
+    known(INPUT_FORMAT, "input format error",
+        &["a word of the command has an invalid value, for example both position outputs at once"],
+        &["compare the sent words with the manual section of the command; `armctl decode yrcx` shows the words"]),
+    known(Alarm::new(12, 75), "illegal remote command",
+        &["the code in WI0 does not exist"],
+        &["check the code, and that words arrive in the correct order and byte order"]),
+    known(Alarm::new(12, 76), "remote command not enabled",
+        &["the programming box has control: the controller accepts only commands that read (references)",
+            "a safety setting disables the dedicated inputs and all remote commands"],
+        &["give control back at the programming box", "check mode and safety settings"]),
+    known(STOP_INPUT, "stopped by the stop input",
+        &["SI(06) was switched off: the motion was stopped"],
+        &["switch SI(06) on again before the next motion"]),
     link(541, "DeviceNet link error"),
     link(542, "DeviceNet link error lasted too long"),
     link(551, "EtherNet/IP link error"),
@@ -164,12 +146,9 @@ pub const KNOWN: [Known; 19] = [
     link(562, "PROFIBUS link error lasted too long"),
     link(571, "PROFINET link error"),
     link(572, "PROFINET link error lasted too long"),
-    Known {
-        alarm: Alarm::new(12, 600),
-        text: "emergency stop on",
-        causes: &["an emergency stop was pressed, or SI(00) is off", "a connection was opened with SI(00) off"],
-        remedies: &["release the emergency stop, switch SI(00) on, reset the alarm, switch the servos on"],
-    },
+    known(Alarm::new(12, 600), "emergency stop on",
+        &["an emergency stop was pressed, or SI(00) is off", "a connection was opened with SI(00) off"],
+        &["release the emergency stop, switch SI(00) on, reset the alarm, switch the servos on"]),
     unit(761),
     unit(762),
     unit(763),
@@ -177,13 +156,18 @@ pub const KNOWN: [Known; 19] = [
     unit(765),
 ];
 
+type Texts = &'static [&'static str];
+
+const fn known(alarm: Alarm, text: &'static str, causes: Texts, remedies: Texts) -> Known {
+    Known { alarm, text, causes, remedies }
+}
+
 const fn link(category: u16, text: &'static str) -> Known {
-    Known { alarm: Alarm::new(12, category), text, causes: LINK_CAUSES, remedies: LINK_REMEDIES }
+    known(Alarm::new(12, category), text, LINK_CAUSES, LINK_REMEDIES)
 }
 
 const fn unit(category: u16) -> Known {
-    let text = "network unit did not initialize";
-    Known { alarm: Alarm::new(12, category), text, causes: &[], remedies: UNIT_REMEDIES }
+    known(Alarm::new(12, category), "network unit did not initialize", &[], UNIT_REMEDIES)
 }
 
 #[cfg(test)]

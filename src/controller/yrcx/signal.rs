@@ -188,18 +188,13 @@ pub const DEDICATED: [Dedicated; 20] = [
     says(output::WARNING, "warning", "warning output", "a warning is active"),
 ];
 
-const fn given(
-    signal: Signal,
-    name: &'static str,
-    text: &'static str,
-    trigger: Trigger,
-    effect: &'static str,
-    risk: Risk,
-) -> Dedicated {
+type Text = &'static str;
+
+const fn given(signal: Signal, name: Text, text: Text, trigger: Trigger, effect: Text, risk: Risk) -> Dedicated {
     Dedicated { signal, name, text, trigger, effect, risk }
 }
 
-const fn says(signal: Signal, name: &'static str, text: &'static str, effect: &'static str) -> Dedicated {
+const fn says(signal: Signal, name: Text, text: Text, effect: Text) -> Dedicated {
     Dedicated { signal, name, text, trigger: Trigger::State, effect, risk: Risk::Read }
 }
 

@@ -1,5 +1,6 @@
 //! Packet reader for pcap and pcapng files (draft-ietf-opsawg-pcap, draft-ietf-opsawg-pcapng).
 
+use crate::refuse_if;
 use std::io::Read;
 use std::time::Duration;
 
@@ -274,13 +275,9 @@ impl<R: Read> Packets<R> {
             Some((seconds, parts, order.size(head, 8)?, order.size(head, 12)?))
         };
         let (seconds, parts, len, original) = header().ok_or("the file ends inside the header of a packet")?;
-        if len > MAX_PACKET_LEN {
-            return Err("a packet with an invalid length");
-        }
+        refuse_if(len > MAX_PACKET_LEN, "a packet with an invalid length")?;
         let whole = PACKET_HEADER + len;
-        if self.file.peek(whole).map_err(|_| UNREADABLE)?.len() < whole {
-            return Err("the file ends inside a packet");
-        }
+        refuse_if(self.file.peek(whole).map_err(|_| UNREADABLE)?.len() < whole, "the file ends inside a packet")?;
         let time = Some(Clock { offset: seconds, ..interface.clock }.time(parts));
         Ok((PacketSpan { interface, time, bytes: PACKET_HEADER..whole, original }, whole))
     }
@@ -303,16 +300,10 @@ impl<R: Read> Packets<R> {
         }
         let order = self.byte_order;
         let len = order.size(head, 4).ok_or(short)?;
-        if len < 12 || len % 4 != 0 || len > MAX_PACKET_LEN {
-            return Err("a block with an invalid length");
-        }
+        refuse_if(len < 12 || len % 4 != 0 || len > MAX_PACKET_LEN, "a block with an invalid length")?;
         let block = self.file.peek(len).map_err(|_| UNREADABLE)?;
-        if block.len() < len {
-            return Err(short);
-        }
-        if order.size(block, len - 4) != Some(len) {
-            return Err("a block with two different lengths");
-        }
+        refuse_if(block.len() < len, short)?;
+        refuse_if(order.size(block, len - 4) != Some(len), "a block with two different lengths")?;
         let body = &block[8..len - 4];
         match kind {
             SECTION_HEADER if order.short(body, 4) != Some(1) => return Err("a section with an unknown version"),
@@ -323,9 +314,7 @@ impl<R: Read> Packets<R> {
             INTERFACE => {
                 let interface = interface(order, body).ok_or("a truncated interface block")?;
                 if let Format::Blocks(interfaces) = &mut self.format {
-                    if interfaces.len() >= MAX_INTERFACES {
-                        return Err("too many interfaces");
-                    }
+                    refuse_if(interfaces.len() >= MAX_INTERFACES, "too many interfaces")?;
                     interfaces.push(interface);
                 }
             }

@@ -22,11 +22,8 @@ pub enum Error {
         serial: u32,
     },
     /// Another master owns the connections of the slave.
-    #[error("another master owns the connections of MAC {mac}")]
-    Owned {
-        /// MAC of the slave.
-        mac: Mac,
-    },
+    #[error("another master owns the connections of MAC {0}")]
+    Owned(Mac),
     /// The image sizes of the slave do not match any of the expected profiles.
     #[error("MAC {mac} receives {consumed_size} bytes and sends {produced_size}; armctl supports {known}")]
     Size {

@@ -45,7 +45,8 @@ pub enum Listen {
 /// A running hub. It stops when it is dropped.
 pub struct Hub<A: Application + 'static> {
     inner: Arc<Inner<A>>,
-    endpoint_addresses: Vec<String>,
+    /// Addresses of the endpoints in the order of `listen`, for example `127.0.0.1:40000` or `/dev/pts/4`.
+    pub endpoint_addresses: Vec<String>,
     quit: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
@@ -120,11 +121,6 @@ impl<A: Application + 'static> Hub<A> {
         Ok(Self { inner, endpoint_addresses, quit: Some(quit), thread: Some(thread) })
     }
 
-    /// Addresses of the endpoints in the order of `listen`, for example `127.0.0.1:40000` or `/dev/pts/4`.
-    pub fn endpoint_addresses(&self) -> &[String] {
-        &self.endpoint_addresses
-    }
-
     /// Changes the faults for frames to the slave and from the slave.
     pub fn set_faults(&self, faults: Option<(Faults, Faults)>) {
         self.inner.lock().faults = faults;
@@ -192,7 +188,7 @@ async fn accept<A: Application + 'static>(inner: Arc<Inner<A>>, listener: TcpLis
         let Ok(mut pipe) = Pipe::tcp(stream) else { continue };
         let inner = Arc::clone(&inner);
         tokio::spawn(async move {
-            let number = inner.join(pipe.writer().clone());
+            let number = inner.join(pipe.writer.clone());
             let mut lines = Lines::default();
             while let Ok(bytes) = pipe.read().await {
                 inner.take(number, &mut lines, &bytes);
@@ -271,7 +267,7 @@ impl<A: Application> Inner<A> {
 impl<A: Application> SharedState<A> {
     /// Executes a line from a client, and returns the answer.
     fn command(&mut self, now: Now, number: u64, line: &Line, bitrate: Bitrate) -> Vec<u8> {
-        let is_off = self.device.as_ref().is_some_and(|device| device.fault() == Some(DeviceFault::BusOff));
+        let is_off = self.device.as_ref().is_some_and(|device| device.fault == Some(DeviceFault::BusOff));
         let is_alone =
             self.device.is_none() && self.clients.values().filter(|client| client.mode == Mode::Open).count() < 2;
         let Some(client) = self.clients.get_mut(&number) else { return Vec::new() };
@@ -365,8 +361,8 @@ impl<A: Application> SharedState<A> {
     /// Executes the work that is due. Returns the time at which it must be called again.
     fn advance(&mut self, now: Now) -> Option<Now> {
         let due: Vec<(Now, bool, Frame)> = self.delayed.extract_if(.., |(at, ..)| *at <= now).collect();
-        let is_off = self.device.as_ref().is_some_and(|device| device.fault() == Some(DeviceFault::BusOff));
-        let bitrate = self.device.as_ref().map(|device| device.setup().bitrate)?;
+        let is_off = self.device.as_ref().is_some_and(|device| device.fault == Some(DeviceFault::BusOff));
+        let bitrate = self.device.as_ref().map(|device| device.setup.bitrate)?;
         for (_, to_device, frame) in due {
             match &mut self.device {
                 Some(device) if to_device => device.handle(now, &frame),

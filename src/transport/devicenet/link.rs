@@ -30,7 +30,7 @@ impl Polled {
     /// The slave does not answer, refuses, or does not have the expected image sizes.
     pub async fn open(network: &Network, settings: Settings) -> Result<Self, Error> {
         let connection = network.connect(settings).await?;
-        let size = connection.view().details.size;
+        let size = connection.views.now().details.size;
         let size = size.ok_or_else(|| Error::Settings("the connection carries only messages, no images".to_owned()))?;
         Ok(Self::over(connection, Sizes { output: size, input: size }))
     }
@@ -56,11 +56,11 @@ impl Bus for Connection {
     }
 
     fn watchdog(&self) -> Duration {
-        self.view().details.rate.unwrap_or_default() * WATCHDOG
+        self.views.now().details.rate.unwrap_or_default() * WATCHDOG
     }
 
     fn traffic(&self) -> Traffic {
-        let view = self.view();
+        let view = self.views.now();
         let counted = view.statistics;
         let (health, _) = self.network().health();
         let irregular = vec![
@@ -169,7 +169,7 @@ impl Reading {
 
     async fn wait(&mut self, reported: ReportedState<'_>) -> Event {
         loop {
-            let view = self.connection.view();
+            let view = self.connection.views.now();
             if reported.is_up && view.state != State::Open {
                 let error = view.last_error.unwrap_or(Error::Outdated);
                 return Event::Lost(LinkError::Lost { cause: Cause::new(error), outputs: Outputs::Never });
@@ -239,42 +239,39 @@ pub async fn read(connection: &Connection, mac: Mac, request: &Request) -> Resul
 
 /// Returns the advice for an error. `None` if the general advice for its kind is enough.
 fn advice(error: &Error) -> Option<std::borrow::Cow<'static, str>> {
-    Some(match error {
+    let advice = match error {
         Error::Duplicate { .. } => {
             "close the session that uses it (`armctl session list`), or set another number for this master with \
              `master=` in the URL (0 to 63)"
-                .into()
         }
-        Error::Owned { .. } => {
+        Error::Owned(_) => {
             "remove this node from the scan list of the other master, or only read: `yrcx status` and `yrcx io get` \
              listen to its traffic"
-                .into()
         }
         Error::Size { .. } => {
             "set the I/O size of the controller's unit to Normal (48 bytes) or Compact (4); check `mac=` in the URL: \
              `yrcx devicenet scan` lists the nodes"
-                .into()
         }
         Error::Silent { is_bus_alive: true, .. } => {
-            "check `mac=` in the URL: `yrcx devicenet scan` lists the nodes that answer".into()
+            "check `mac=` in the URL: `yrcx devicenet scan` lists the nodes that answer"
         }
         Error::Silent { .. } | Error::Lost { .. } => {
             "check the bit rate, the 24 V of the bus, its plugs and both terminators (121 ohm); check that the \
              controller is on"
-                .into()
         }
-        Error::BusOff => "check the bit rate and the wiring (CAN_H and CAN_L, both terminators)".into(),
-        Error::Port(PortError::Open { advice, .. }) => advice.clone(),
-        Error::Port(PortError::Setup { .. } | PortError::Mute { .. } | PortError::Flooded { .. }) => {
-            "check that it is an SLCAN (Lawicel) adapter; check `baud=` in the URL".into()
+        Error::BusOff => "check the bit rate and the wiring (CAN_H and CAN_L, both terminators)",
+        Error::Port(PortError::Open { advice, .. }) => return Some(advice.clone()),
+        Error::Port(PortError::Setup { .. } | PortError::Mute(_) | PortError::Flooded(_)) => {
+            "check that it is an SLCAN (Lawicel) adapter; check `baud=` in the URL"
         }
-        Error::Port(PortError::Gone { .. }) => "plug the adapter in again".into(),
-        Error::Port(PortError::Stuck { .. }) => "set a longer `cycle=` in the URL, or check the bus".into(),
+        Error::Port(PortError::Gone { .. }) => "plug the adapter in again",
+        Error::Port(PortError::Stuck(_)) => "set a longer `cycle=` in the URL, or check the bus",
         Error::Refused { .. } | Error::Senseless { .. } => {
-            "check `mac=` in the URL: `yrcx devicenet identity` shows the device".into()
+            "check `mac=` in the URL: `yrcx devicenet identity` shows the device"
         }
         Error::Settings(_) | Error::Outdated | Error::Ended => return None,
-    })
+    };
+    Some(advice.into())
 }
 
 impl From<Error> for LinkError {
@@ -285,14 +282,14 @@ impl From<Error> for LinkError {
         };
         let cause = Cause { code, advice: advice(&error), ..Cause::new(&error) };
         match error {
-            Error::Owned { .. } => Self::Owned(cause),
+            Error::Owned(_) => Self::Owned(cause),
             Error::Size { .. } => Self::Size(cause),
             Error::Refused { .. } => Self::Refused(cause),
-            Error::Silent { .. } | Error::Lost { .. } | Error::BusOff => Self::Silent(cause),
-            Error::Port(PortError::Open { .. } | PortError::Mute { .. } | PortError::Gone { .. }) => {
-                Self::Silent(cause)
-            }
-            Error::Senseless { .. } | Error::Port(PortError::Setup { .. } | PortError::Flooded { .. }) => {
+            Error::Silent { .. }
+            | Error::Lost { .. }
+            | Error::BusOff
+            | Error::Port(PortError::Open { .. } | PortError::Mute(_) | PortError::Gone { .. }) => Self::Silent(cause),
+            Error::Senseless { .. } | Error::Port(PortError::Setup { .. } | PortError::Flooded(_)) => {
                 Self::Malformed(cause)
             }
             Error::Settings(_) => Self::Settings(cause),

@@ -53,10 +53,7 @@ pub enum AdapterLocation {
         port: u16,
     },
     /// A Linux CAN interface.
-    SocketCan {
-        /// Interface name, for example `can0`.
-        interface: String,
-    },
+    SocketCan(String),
 }
 
 impl fmt::Display for AdapterLocation {
@@ -64,7 +61,7 @@ impl fmt::Display for AdapterLocation {
         match self {
             Self::Serial { path, .. } => f.write_str(path),
             Self::Tcp { host, port } => write!(f, "{host}:{port}"),
-            Self::SocketCan { interface } => f.write_str(interface),
+            Self::SocketCan(interface) => f.write_str(interface),
         }
     }
 }
@@ -286,20 +283,11 @@ const ONLY_LISTENS: &str = "the adapter only listens";
 pub struct Connection {
     network: Network,
     number: u64,
-    pub(super) views: Views,
+    /// Its states: the current one, and those that follow.
+    pub views: Views,
 }
 
 impl Connection {
-    /// Current state.
-    pub fn view(&self) -> View {
-        self.views.now()
-    }
-
-    /// Waits until `condition` is true, or until the connection is closed.
-    pub async fn until(&mut self, condition: impl FnMut(&View) -> bool) -> View {
-        self.views.until(condition).await
-    }
-
     /// Sends this image, starting with the next poll; see [`Scanner::set_image`].
     ///
     /// # Errors
@@ -324,7 +312,7 @@ impl Connection {
     /// # Errors
     /// The slave did not confirm the release.
     pub async fn close(mut self) -> Result<(), Error> {
-        let before = self.view().last_error;
+        let before = self.views.now().last_error;
         self.with(|scanner, now| scanner.close(now, self.number));
         self.views.closed(before.as_ref()).await
     }
@@ -545,7 +533,7 @@ async fn open(adapter: &Adapter, tap: Tap) -> Result<Box<dyn CanPort>, PortError
             })?;
             Pipe::tcp(stream).map_err(|error| failed(error.to_string(), advice))?
         }
-        AdapterLocation::SocketCan { interface } => return socket_can(interface),
+        AdapterLocation::SocketCan(interface) => return socket_can(interface),
     };
     Ok(Box::new(SlcanPort::start(name, pipe, adapter.bitrate, listens, tap).await?))
 }

@@ -47,17 +47,13 @@ impl Producer {
 /// Result of a received datagram.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum DatagramResult<'a> {
-    /// A new image.
-    Image {
-        /// Run bit. If the stream has no run/idle header, it is always `true`.
-        run: bool,
-        image: &'a [u8],
-    },
-    /// A datagram without an image: a heartbeat, or a datagram of a sender that has no data. It restarts the timeout.
+    // A new image. If the stream has no run/idle header, the run bit is always `true`.
+    Image { run: bool, image: &'a [u8] },
+    // A datagram without an image: a heartbeat, or a datagram of a sender that has no data. It restarts the timeout.
     Alive,
-    /// An old or a duplicate datagram.
+    // An old or a duplicate datagram.
     Stale,
-    /// A datagram whose size is not the agreed size.
+    // A datagram whose size is not the agreed size.
     WrongSize,
 }
 

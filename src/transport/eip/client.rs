@@ -86,7 +86,7 @@ impl Client {
                 Some(Step::Send(bytes)) => {
                     if self.write(&bytes).await.is_err() {
                         self.stream = None;
-                        self.session.lost(&EipError::Hangup { what });
+                        self.session.lost(&EipError::Hangup(what));
                     }
                 }
                 Some(Step::Disconnect) => self.stream = None,
@@ -135,7 +135,7 @@ impl Client {
             }
             Ok(Ok(0) | Err(_)) => {
                 self.stream = None;
-                self.session.lost(&EipError::Hangup { what });
+                self.session.lost(&EipError::Hangup(what));
             }
             Err(_) => {}
         }

@@ -15,17 +15,11 @@ use crate::plain;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum EipError {
     /// The host name has no address.
-    #[error("cannot find host '{host}'")]
-    NotFound {
-        /// Host name.
-        host: String,
-    },
+    #[error("cannot find host '{0}'")]
+    NotFound(String),
     /// The host has no IPv4 address.
-    #[error("'{host}' has no IPv4 address, but EtherNet/IP needs one")]
-    NotIpv4 {
-        /// Host name.
-        host: String,
-    },
+    #[error("'{0}' has no IPv4 address, but EtherNet/IP needs one")]
+    NotIpv4(String),
     /// The TCP connection was refused or timed out.
     #[error("no TCP connection: {text}")]
     Unreachable {
@@ -35,11 +29,8 @@ pub enum EipError {
         text: String,
     },
     /// The TCP connection was closed before the answer.
-    #[error("the TCP connection ended before the answer to {what}")]
-    Hangup {
-        /// Name of the request.
-        what: &'static str,
-    },
+    #[error("the TCP connection ended before the answer to {0}")]
+    Hangup(&'static str),
     /// The device did not answer in time.
     #[error("no answer to {what} within {} ms", after.as_millis())]
     NoAnswer {
@@ -81,11 +72,8 @@ pub enum EipError {
         why: &'static str,
     },
     /// The device stopped sending its image, and the connection timed out.
-    #[error("no image received for {} ms", after.as_millis())]
-    Silent {
-        /// Time for which no image arrived.
-        after: Duration,
-    },
+    #[error("no image received for {} ms", .0.as_millis())]
+    Silent(Duration),
     /// The connection was lost, and the caller has not noticed the loss yet: the image that it wants to send belongs to
     /// an older generation.
     #[error("the connection was lost")]
@@ -106,10 +94,7 @@ pub enum EipError {
     Local(#[from] LocalError),
     /// The settings or the request are invalid; nothing was sent.
     #[error("{0}")]
-    Impossible(
-        /// The reason, as text.
-        String,
-    ),
+    Impossible(String),
 }
 
 impl BusError for EipError {

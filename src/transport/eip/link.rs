@@ -57,7 +57,7 @@ impl Bus for Device {
     fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, EipError> {
         let change = self.connection.set_image(generation, image)?;
         // The device starts in idle mode after every opening. The first image then also sets the run bit.
-        let runs = self.connection.view().details.run;
+        let runs = self.connection.views.now().details.run;
         if runs { Ok(change) } else { self.connection.set_run(generation, true) }
     }
 
@@ -70,7 +70,7 @@ impl Bus for Device {
     }
 
     fn traffic(&self) -> Traffic {
-        let view = self.connection.view();
+        let view = self.connection.views.now();
         let counted = view.statistics;
         let irregular = vec![
             (counted.lost, "lost"),
@@ -137,12 +137,12 @@ impl ImageConnection for Reading {
 /// First IPv4 address of a host.
 pub async fn resolve(host: &str, port: u16) -> Result<SocketAddrV4, EipError> {
     let found = tokio::net::lookup_host((host, port)).await;
-    let mut addresses = found.map_err(|_| EipError::NotFound { host: host.to_owned() })?;
+    let mut addresses = found.map_err(|_| EipError::NotFound(host.to_owned()))?;
     let first = addresses.find_map(|address| match address {
         SocketAddr::V4(address) => Some(address),
         SocketAddr::V6(_) => None,
     });
-    first.ok_or_else(|| EipError::NotIpv4 { host: host.to_owned() })
+    first.ok_or_else(|| EipError::NotIpv4(host.to_owned()))
 }
 
 /// Extended status that means: another originator owns the outputs.
@@ -152,30 +152,26 @@ const CONNECTION: &[&str] = &["in", "out", "config", "in_size", "out_size"];
 
 impl From<EipError> for LinkError {
     fn from(error: EipError) -> Self {
+        use EipError as E;
         let reported = error.code();
         let cause = Cause { code: reported.map(|code| format!("{:#06x}", code.code)), ..Cause::new(&error) };
         match error {
-            EipError::NotFound { .. } => {
-                Self::Silent(cause.advice("check the name, or use the address of the controller"))
-            }
-            EipError::NotIpv4 { .. } => Self::Settings(cause.advice("use the IPv4 address of the controller")),
-            EipError::Unreachable { .. }
-            | EipError::NoAnswer { .. }
-            | EipError::Hangup { .. }
-            | EipError::Silent { .. } => Self::Silent(cause.advice(
+            E::NotFound(_) => Self::Silent(cause.advice("check the name, or use the address of the controller")),
+            E::NotIpv4(_) => Self::Settings(cause.advice("use the IPv4 address of the controller")),
+            E::Unreachable { .. } | E::NoAnswer { .. } | E::Hangup(_) | E::Silent(_) => Self::Silent(cause.advice(
                 "check the address; check that the controller is on, and that its EtherNet/IP board is enabled",
             )),
-            EipError::Encapsulation { .. } | EipError::Refused { .. } => match reported {
+            E::Encapsulation { .. } | E::Refused { .. } => match reported {
                 Some(code) if code.code == OWNED => Self::Owned(cause),
                 Some(code) => Self::Refused(cause.advice(with_advice(code.remedy))),
                 None => Self::Refused(cause.options(CONNECTION)),
             },
-            EipError::Malformed { .. } | EipError::Senseless { .. } => {
+            E::Malformed { .. } | E::Senseless { .. } => {
                 Self::Malformed(cause.advice("check that this is the address of an EtherNet/IP device"))
             }
-            EipError::WrongSize { .. } => Self::Size(cause.options(&["in", "in_size"])),
-            EipError::Impossible(_) => Self::Settings(cause),
-            EipError::Local(_) | EipError::Outdated | EipError::Ended => {
+            E::WrongSize { .. } => Self::Size(cause.options(&["in", "in_size"])),
+            E::Impossible(_) => Self::Settings(cause),
+            E::Local(_) | E::Outdated | E::Ended => {
                 Self::Local(cause.advice("check the network settings and the firewall of this computer"))
             }
         }

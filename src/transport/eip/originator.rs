@@ -17,7 +17,9 @@ use super::session::{Ask, Session, Step, Token};
 use super::settings::{Role, Settings};
 use super::wire::{Close, Command, Cyclic, Net, Open, Opened, RUN, RrData, Triad};
 use super::{IO_PORT, Now};
+use crate::BACKOFF;
 use crate::image::image_after_loss;
+use crate::refuse_if;
 
 mod identifiers;
 mod view;
@@ -33,14 +35,6 @@ const FORWARD_CLOSE: &str = "ForwardClose";
 const TRANSPORT: u8 = 1;
 /// Extended status of a refused ForwardClose: the connection does not exist.
 const NOT_FOUND: u16 = 0x0107;
-/// Pauses before attempts to reopen the connection. The last pause repeats.
-const BACKOFF: [Duration; 5] = [
-    Duration::from_millis(250),
-    Duration::from_millis(500),
-    Duration::from_secs(1),
-    Duration::from_secs(2),
-    Duration::from_secs(5),
-];
 
 /// An action that the driver must execute.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -74,19 +68,17 @@ struct Io {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
-    /// The originator has not been polled yet.
+    // The originator has not been polled yet.
     New,
-    /// ForwardOpen was sent; its answer is pending.
+    // ForwardOpen was sent; its answer is pending.
     Opening,
     Open,
-    /// One last image is sent in idle mode before the close. The number is the number of datagrams that were sent
-    /// before it.
+    // One last image is sent in idle mode before the close. The number is the number of datagrams that were sent
+    // before it.
     Parting(u64),
-    /// ForwardClose was sent. After its answer, the connection ends. If `again` is `true`, it opens again.
-    Closing {
-        is_reopening: bool,
-    },
-    /// The originator waits until the next attempt to open the connection.
+    // ForwardClose was sent. After its answer, the connection ends. If `again` is `true`, it opens again.
+    Closing { is_reopening: bool },
+    // The originator waits until the next attempt to open the connection.
     Waiting(Now),
     Ended,
 }
@@ -324,7 +316,7 @@ impl Originator {
         let Some(io) = &mut self.io else { return false };
         if now >= io.consumer.until() {
             let after = io.consumer.patience();
-            self.handle_timeout(EipError::Silent { after });
+            self.handle_timeout(EipError::Silent(after));
             return true;
         }
         if now < io.producer.due() {
@@ -386,9 +378,7 @@ impl Originator {
         let answer = Answer::parse(FORWARD_OPEN, data)?;
         let addresses = RrData::parse_answer(data).map_err(malformed)?;
         let opened = Opened::parse(&answer.done(FORWARD_OPEN)?).map_err(malformed)?;
-        if opened.triad != self.triad {
-            return Err(senseless("it belongs to another connection"));
-        }
+        refuse_if(opened.triad != self.triad, senseless("it belongs to another connection"))?;
         if opened.t_o_id != self.id && !self.settings.multicast {
             return Err(senseless("it changes the connection id that armctl chose"));
         }
@@ -407,9 +397,7 @@ impl Originator {
             None => SocketAddrV4::new(*self.target.ip(), IO_PORT),
         };
         let group = addresses.t_o.map(|address| *address.ip()).filter(Ipv4Addr::is_multicast);
-        if self.settings.multicast && group.is_none() {
-            return Err(senseless("it contains no multicast group"));
-        }
+        refuse_if(self.settings.multicast && group.is_none(), senseless("it contains no multicast group"))?;
         self.actions.extend(group.map(Action::Join));
         let intervals = self.settings.multiplier.intervals();
         let size = usize::from(self.settings.input_size);

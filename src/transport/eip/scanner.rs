@@ -156,24 +156,15 @@ impl Scanner {
 pub struct Connection {
     owner: Arc<Owner>,
     id: u64,
-    pub(super) views: Views,
+    /// Its states: the current one, and those that follow.
+    pub views: Views,
     tokens: u64,
 }
 
 impl Connection {
-    /// Current state.
-    pub fn view(&self) -> View {
-        self.views.now()
-    }
-
     /// Current time on the clock that the view uses for its images.
     pub fn now(&self) -> Now {
         self.owner.inner.now()
-    }
-
-    /// Waits until `condition` is true, or until the connection is closed.
-    pub async fn until(&mut self, condition: impl FnMut(&View) -> bool) -> View {
-        self.views.until(condition).await
     }
 
     /// Sends this image, starting with the next interval; see [`Originator::set_image`].
@@ -204,7 +195,7 @@ impl Connection {
     /// Closes the connection: sends one image in idle mode, then ForwardClose. Fails if the device did not confirm the
     /// close.
     pub async fn close(mut self) -> Result<(), EipError> {
-        let before = self.view().last_error;
+        let before = self.views.now().last_error;
         self.with(|core| {
             core.close();
             Ok(())

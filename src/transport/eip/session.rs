@@ -19,10 +19,7 @@ const MAX_RETRY_PAUSE: Duration = Duration::from_millis(800);
 
 /// Number that identifies the request to which an answer belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Token(
-    /// A number that the caller selects.
-    pub u64,
-);
+pub struct Token(pub u64);
 
 /// A request.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -60,16 +57,10 @@ pub enum Step {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
     Down,
-    Connecting {
-        until: Now,
-    },
-    Registering {
-        until: Now,
-    },
-    /// The device has no free session. The session waits for the next attempt to register.
-    Full {
-        until: Now,
-    },
+    Connecting { until: Now },
+    Registering { until: Now },
+    // The device has no free session. The session waits for the next attempt to register.
+    Full { until: Now },
     Up,
 }
 
@@ -171,7 +162,7 @@ impl Session {
         let was_up = self.phase == Phase::Up;
         self.phase = Phase::Down;
         if let Some((ask, _)) = self.pending.take() {
-            self.answer(ask.token, true, Err(EipError::Hangup { what: ask.what }));
+            self.answer(ask.token, true, Err(EipError::Hangup(ask.what)));
         }
         // If no session was open, queued requests fail at once. If an open session ended, the queued requests use a new
         // TCP connection.
@@ -440,7 +431,7 @@ mod tests {
         let (mut session, _) = current_request();
         session.ask(ask(2));
         session.lost(&EipError::Ended);
-        let result = Err(EipError::Hangup { what: "the test" });
+        let result = Err(EipError::Hangup("the test"));
         assert_eq!(session.poll(NOW), Some(Step::Answer { token: Token(1), sent: true, result }));
         assert_eq!(session.poll(NOW), Some(Step::Connect));
     }

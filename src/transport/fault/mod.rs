@@ -115,11 +115,8 @@ pub enum FaultSpecError {
         second: &'static str,
     },
     /// The text contains a key twice.
-    #[error("{key} appears twice")]
-    Twice {
-        /// The key.
-        key: &'static str,
-    },
+    #[error("{0} appears twice")]
+    Twice(&'static str),
     /// The value is not valid for its key.
     #[error("{key}: '{value}' is not {form}")]
     Value {
@@ -206,7 +203,7 @@ impl<D: Copy> FaultNames<D> {
         if let Some((first, fault)) = named.next() {
             faults.device = Some(*fault);
             match named.next() {
-                Some((second, _)) if first == second => return Err(FaultSpecError::Twice { key: first }),
+                Some((second, _)) if first == second => return Err(FaultSpecError::Twice(first)),
                 Some((second, _)) => return Err(FaultSpecError::TwoOfDevice { first, second }),
                 None => {}
             }
@@ -237,7 +234,7 @@ fn parse<S: Default>(
             return Err(FaultSpecError::Unknown { name: name.to_owned(), known: known.join(", ") });
         };
         if seen.contains(key) {
-            return Err(FaultSpecError::Twice { key });
+            return Err(FaultSpecError::Twice(key));
         }
         seen.push(*key);
         match (setter, value) {

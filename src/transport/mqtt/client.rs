@@ -104,7 +104,7 @@ impl Client {
 
     /// Number of bytes that the connection has not accepted yet.
     pub fn unsent(&mut self) -> usize {
-        self.session.outgoing().len()
+        self.session.outgoing.len()
     }
 
     /// Sends DISCONNECT, so that the broker does not publish the last will, and closes the connection. This can take
@@ -141,14 +141,14 @@ impl Client {
     }
 
     fn flush(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
-        while !self.session.outgoing().is_empty() {
+        while !self.session.outgoing.is_empty() {
             self.is_flushed = false;
             self.stuck_since.get_or_insert_with(Instant::now);
-            let sent = ready!(Pin::new(&mut *self.stream).poll_write(cx, self.session.outgoing()))?;
+            let sent = ready!(Pin::new(&mut *self.stream).poll_write(cx, &self.session.outgoing))?;
             if sent == 0 {
                 return Poll::Ready(Err(io::ErrorKind::WriteZero.into()));
             }
-            self.session.outgoing().drain(..sent);
+            self.session.outgoing.drain(..sent);
             self.stuck_since = None;
         }
         if !self.is_flushed {

@@ -32,7 +32,8 @@ const REPLIES: usize = 64 * 1024;
 pub struct Session {
     inner: Connection<role::Client>,
     version: Version,
-    outgoing: Vec<u8>,
+    /// Bytes to send. The caller removes the bytes that it has sent.
+    pub outgoing: Vec<u8>,
     events: VecDeque<Event>,
     timers: Vec<(TimerKind, Instant)>,
     /// Messages in progress: packet identifier, and number of the message in this client. After the acknowledgement,
@@ -123,11 +124,6 @@ impl Session {
     /// Returns the next event.
     pub fn next_event(&mut self) -> Option<Event> {
         self.events.pop_front()
-    }
-
-    /// Bytes to send. The caller removes the bytes that it has sent.
-    pub fn outgoing(&mut self) -> &mut Vec<u8> {
-        &mut self.outgoing
     }
 
     /// Time at which [`poll`](Self::poll) must be called again.
@@ -431,7 +427,7 @@ mod tests {
 
     fn connected(version: Version) -> (Session, Instant) {
         let (mut session, now) = started(version);
-        session.outgoing().clear();
+        session.outgoing.clear();
         session.handle(now, if version == Version::V3 { &[0x20, 2, 0, 0] } else { &[0x20, 3, 0, 0, 0] });
         assert!(matches!(session.next_event(), Some(Event::Connected)));
         (session, now)
@@ -445,7 +441,7 @@ mod tests {
     fn connect_packet_matches_the_standard() {
         // The expected bytes follow MQTT 3.1.1, sections 3.1.1 to 3.1.3: clean session, will with QoS 1 and retain,
         // user name and password.
-        let (mut session, _) = started(Version::V3);
+        let (session, _) = started(Version::V3);
         let fields = [&b"cell7"[..], b"armctl/cell7/state", b"offline", b"plant", b"secret"];
         let mut expected = vec![0x10, 0, 0, 4];
         expected.extend(b"MQTT");
@@ -455,7 +451,7 @@ mod tests {
             expected.extend(field);
         }
         expected[1] = u8::try_from(expected.len() - 2).unwrap();
-        assert_eq!(*session.outgoing(), expected);
+        assert_eq!(*session.outgoing, expected);
         let shown = format!("{:?}", hello(Version::V5));
         assert!(!shown.contains("secret") && shown.contains("plant"), "{shown}");
     }
@@ -471,7 +467,7 @@ mod tests {
         ] {
             let (mut session, now) = connected(version);
             session.publish(now, &Message { expiry, ..message(true) }).unwrap();
-            assert_eq!(session.outgoing()[2..], [TOPIC, properties, b"x"].concat(), "{version:?} {expiry:?}");
+            assert_eq!(session.outgoing[2..], [TOPIC, properties, b"x"].concat(), "{version:?} {expiry:?}");
         }
     }
 
@@ -480,7 +476,7 @@ mod tests {
         for (version, unsuback) in [(Version::V3, &[0xb0, 2, 0, 1][..]), (Version::V5, &[0xb0, 4, 0, 1, 0, 0])] {
             let (mut session, now) = connected(version);
             session.unsubscribe(now, &["a/b".to_owned()]).unwrap();
-            assert_eq!(session.outgoing()[0], 0xa2);
+            assert_eq!(session.outgoing[0], 0xa2);
             session.handle(now, unsuback);
             assert!(session.next_event().is_none());
         }
@@ -491,7 +487,7 @@ mod tests {
         for version in [Version::V3, Version::V5] {
             let (mut session, now) = connected(version);
             let numbers = [(); 2].map(|()| session.publish(now, &message(true)).unwrap().unwrap());
-            assert_eq!(session.outgoing()[0], 0x33, "PUBLISH with QoS 1, kept");
+            assert_eq!(session.outgoing[0], 0x33, "PUBLISH with QoS 1, kept");
             // Two acknowledgements arrive at once. Their identifiers are free before the events are taken from the
             // queue.
             session.handle(now, &[0x40, 2, 0, 1, 0x40, 2, 0, 2]);
@@ -535,7 +531,7 @@ mod tests {
         let ping = session.due().expect("a ping is due");
         assert!(ping <= now + Duration::from_secs(30));
         session.poll(ping);
-        assert!(session.outgoing().ends_with(&[0xc0, 0]), "{:?}", session.outgoing());
+        assert!(session.outgoing.ends_with(&[0xc0, 0]), "{:?}", session.outgoing);
         session.poll(ping + PONG_TIMEOUT);
         assert!(matches!(session.next_event(), Some(Event::Lost(Loss::Silent))));
     }
@@ -573,7 +569,7 @@ mod tests {
         let mut at = now;
         for number in 0..most {
             session.handle(at, packet);
-            session.outgoing().clear();
+            session.outgoing.clear();
             while let Some(event) = session.next_event() {
                 if let Event::Lost(loss) = event {
                     return (number, Some(loss.to_string()));
@@ -604,8 +600,8 @@ mod tests {
         for _ in 0..100_000 {
             let number = session.publish(now, &message(true)).unwrap();
             // Layout of PUBLISH: type, length, topic with its length, identifier.
-            let id = [session.outgoing()[7], session.outgoing()[8]];
-            session.outgoing().clear();
+            let id = [session.outgoing[7], session.outgoing[8]];
+            session.outgoing.clear();
             puback[2..4].copy_from_slice(&id);
             session.handle(now, &puback);
             let Some(Event::Acknowledged(acknowledged, None)) = session.next_event() else { panic!("not taken") };
@@ -616,13 +612,13 @@ mod tests {
     #[test]
     fn limits_unread_replies() {
         let (mut session, now) = connected(Version::V3);
-        session.outgoing().clear();
+        session.outgoing.clear();
         // One packet every 100 ms does not count as flood. The test sends no output, so the replies wait.
         for number in 1..u16::MAX {
             let [high, low] = number.to_be_bytes();
             session.handle(now + Duration::from_millis(100) * number.into(), &[0x32, 5, 0, 1, b'a', high, low]);
         }
-        assert!(session.outgoing().len() <= REPLIES + 4);
+        assert!(session.outgoing.len() <= REPLIES + 4);
         let lost = std::iter::from_fn(|| session.next_event()).any(|event| matches!(event, Event::Lost(Loss::Unread)));
         assert!(lost);
     }
@@ -630,12 +626,12 @@ mod tests {
     #[test]
     fn rejects_invalid_topics() {
         let (mut session, now) = connected(Version::V5);
-        session.outgoing().clear();
+        session.outgoing.clear();
         for topic in ["", "a/+/b", "a/#", "a\0b"] {
             let message = Message { topic: topic.to_owned(), ..message(true) };
             assert_eq!(session.publish(now, &message), Err(SendError::Invalid), "{topic:?}");
         }
-        assert!(session.outgoing().is_empty() && session.next_event().is_none());
+        assert!(session.outgoing.is_empty() && session.next_event().is_none());
     }
 
     proptest! {

@@ -127,7 +127,7 @@ impl Driver {
             };
             if let Err(error) = outcome {
                 let now = self.shared.start.elapsed();
-                let error = ProfibusError::Gone { text: plain(&error) };
+                let error = ProfibusError::Gone(plain(&error));
                 self.shared.master().port_failed(now, error);
             }
             let mut master = self.shared.master();
@@ -219,7 +219,7 @@ impl Record {
 pub fn survey(survey: &mut Survey, port: &mut dyn Port, tap: Option<Tap>) -> Result<Vec<StationResult>, ProfibusError> {
     let start = Instant::now();
     let mut record = tap.map(Record::new);
-    let gone = |error: io::Error| ProfibusError::Gone { text: plain(&error) };
+    let gone = |error: io::Error| ProfibusError::Gone(plain(&error));
     let mut buffer = [0; 512];
     loop {
         if let Some(result) = survey.result() {

@@ -12,10 +12,7 @@ use crate::image::view::BusError;
 pub enum ProfibusError {
     /// Invalid settings; nothing was sent.
     #[error("{0}")]
-    Settings(
-        /// The reason.
-        String,
-    ),
+    Settings(String),
     /// The adapter cannot be opened, or refuses a setting.
     #[error("{port}: {text}")]
     Port {
@@ -25,11 +22,8 @@ pub enum ProfibusError {
         text: String,
     },
     /// The adapter was disconnected.
-    #[error("the adapter was disconnected: {text}")]
-    Gone {
-        /// Reason that the system reports.
-        text: String,
-    },
+    #[error("the adapter was disconnected: {0}")]
+    Gone(String),
     /// Another master is on the bus. This master has sent nothing after it received traffic of the other master.
     #[error("another master is on the bus: station {master} ({heard})")]
     OtherMaster {
@@ -39,11 +33,8 @@ pub enum ProfibusError {
         heard: &'static str,
     },
     /// The traffic on the bus is unreadable. Nothing was sent.
-    #[error("cannot decode the traffic on the bus at this bit rate ({bytes} bytes)")]
-    Unreadable {
-        /// Number of unreadable bytes.
-        bytes: usize,
-    },
+    #[error("cannot decode the traffic on the bus at this bit rate ({0} bytes)")]
+    Unreadable(usize),
     /// The station did not answer.
     #[error("no answer from station {station} to {request_name} ({attempts} attempts, {} ms each{heard})", slot.as_millis())]
     NoAnswer {
@@ -59,11 +50,8 @@ pub enum ProfibusError {
         heard: UnexpectedBytes,
     },
     /// The station is a master.
-    #[error("station {station} is a master, not a slave")]
-    IsMaster {
-        /// Address of the station.
-        station: u8,
-    },
+    #[error("station {0} is a master, not a slave")]
+    IsMaster(u8),
     /// The station refused.
     #[error("station {station} refused {request_name}: {}", status.text())]
     Refused {

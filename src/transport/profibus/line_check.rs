@@ -70,7 +70,7 @@ impl LineCheck {
             return None;
         }
         Some(if self.unreadable > MAX_NOISE + TOKEN * self.tokens.len() {
-            Err(ProfibusError::Unreadable { bytes: self.unreadable })
+            Err(ProfibusError::Unreadable(self.unreadable))
         } else if let Some(&master) = self.tokens.first() {
             Err(ProfibusError::OtherMaster { master, heard: "it passed the token" })
         } else {

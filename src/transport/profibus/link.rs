@@ -141,8 +141,8 @@ impl Listening {
 
     async fn wait(&mut self, reported: ReportedState<'_>) -> Event {
         loop {
-            let before = self.hearing.heard().exchanges;
-            if let Some(input) = self.hearing.heard().input.clone().filter(|_| reported.is_up) {
+            let before = self.hearing.last.exchanges;
+            if let Some(input) = self.hearing.last.input.clone().filter(|_| reported.is_up) {
                 let image: Arc<[u8]> = self.byte_swap.native_order(&input).into();
                 if reported.is_new(&image) {
                     return Event::Image(image);
@@ -155,7 +155,7 @@ impl Listening {
                     return Event::Lost(LinkError::Lost { cause, outputs: Outputs::Never });
                 }
                 // Without a port, no more data can arrive, so this wait never ends.
-                Err(ProfibusError::Gone { .. }) => std::future::pending().await,
+                Err(ProfibusError::Gone(_)) => std::future::pending().await,
                 Ok(_) | Err(_) => {}
             }
         }
@@ -180,71 +180,72 @@ pub fn record(tap: Tap) -> Option<super::driver::Tap> {
 
 impl From<ProfibusError> for LinkError {
     fn from(error: ProfibusError) -> Self {
+        use ProfibusError as E;
         let cause = Cause::new(&error);
         match error {
-            ProfibusError::Settings(_) => Self::Settings(cause),
-            ProfibusError::Port { .. } => Self::Silent(cause.advice(
+            E::Settings(_) => Self::Settings(cause),
+            E::Port { .. } => Self::Silent(cause.advice(
                 "check the name of the port (`armctl robots discover` lists the ports); check that the adapter \
                  supports the settings; close every session and program that uses the port",
             )),
-            ProfibusError::Gone { .. } => {
+            E::Gone(_) => {
                 Self::Silent(cause.advice("check the plug and the power supply of the adapter"))
             }
-            ProfibusError::OtherMaster { .. } => Self::Owned(cause.advice(
+            E::OtherMaster { .. } => Self::Owned(cause.advice(
                 "disconnect the other master, because armctl must be the only master; or add `role=listen` to the URL \
                  to only read",
             )),
-            ProfibusError::Unreadable { .. } => Self::Owned(cause.advice(
+            E::Unreadable(_) => Self::Owned(cause.advice(
                 "set `baud=` in the URL to the bit rate of the bus; check for another master, missing terminators, and \
                  crossed A and B wires",
             )),
-            ProfibusError::NoAnswer { .. } => Self::Silent(cause.advice(
+            E::NoAnswer { .. } => Self::Silent(cause.advice(
                 "check `station=` and `baud=` in the URL, the A and B wires, and both terminators with their supply; check \
                  that the controller is on. With a slow adapter, set `slot=50ms`",
             )),
-            ProfibusError::IsMaster { .. } => {
+            E::IsMaster(_) => {
                 Self::Malformed(cause.advice("check `station=` in the URL; `yrcx profibus scan` lists the stations"))
             }
-            ProfibusError::Refused { .. } => Self::Refused(
+            E::Refused { .. } => Self::Refused(
                 cause
                     .options(&["station", "cfg", "prm"])
                     .advice("the slave does not support this request; for Get_Cfg, set `cfg=` or `gsd=` in the URL"),
             ),
-            ProfibusError::Malformed { .. } => {
+            E::Malformed { .. } => {
                 Self::Malformed(cause.advice("check that this is the address of a PROFIBUS slave"))
             }
-            ProfibusError::Ident { found, .. } => Self::Refused(
+            E::Ident { found, .. } => Self::Refused(
                 cause.advice(format!("if this is the controller, set `ident={found:#06x}` in the URL, or remove `ident=`")),
             ),
-            ProfibusError::Size { .. } | ProfibusError::Length { .. } => {
+            E::Size { .. } | E::Length { .. } => {
                 Self::Size(cause.options(&["station", "cfg"]).advice(
                     "the image must have 48 bytes each way: check `station=` and `cfg=` in the URL, and the unit of the \
                      controller",
                 ))
             }
-            ProfibusError::ParameterFault { .. } => Self::Refused(
+            E::ParameterFault { .. } => Self::Refused(
                 cause
                     .options(&["prm", "gsd"])
                     .advice("set `prm=` in the URL to the bytes in the GSD file of the unit, or `gsd=` to the file"),
             ),
-            ProfibusError::ConfigurationFault { .. } => Self::Refused(
+            E::ConfigurationFault { .. } => Self::Refused(
                 cause
                     .options(&["cfg", "gsd"])
                     .advice("remove `cfg=` to use the configuration of the slave, or set `gsd=` to the file of the unit"),
             ),
-            ProfibusError::Locked { .. } => Self::Owned(cause.advice(
+            E::Locked { .. } => Self::Owned(cause.advice(
                 "disconnect that master, or close the session of the controller; with `role=listen` in the URL, armctl \
                  only reads",
             )),
-            ProfibusError::NotReady { .. } | ProfibusError::Left { .. } => Self::Silent(cause.advice(
+            E::NotReady { .. } | E::Left { .. } => Self::Silent(cause.advice(
                 "check the lamps of the unit and the display of the controller; `yrcx profibus probe` shows the \
                  diagnosis",
             )),
-            ProfibusError::NotHeard { .. } => Self::Silent(cause.advice(
+            E::NotHeard { .. } => Self::Silent(cause.advice(
                 "open a session, which takes control (`armctl session open`), or listen on the bus of the PLC (set \
                  `station=` and `baud=` to the values of that bus). A controller sends its images only to its master",
             )),
-            ProfibusError::Outdated | ProfibusError::Ended => Self::Local(cause),
+            E::Outdated | E::Ended => Self::Local(cause),
         }
     }
 }

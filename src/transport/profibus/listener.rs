@@ -29,18 +29,14 @@ pub struct Listener {
     stream: Stream,
     /// Last request for a data exchange that has no answer yet: its master, and the output image.
     last_request: Option<(u8, Vec<u8>)>,
-    heard: BusTraffic,
+    /// Traffic that was received so far.
+    pub heard: BusTraffic,
 }
 
 impl Listener {
     /// Creates a listener for the slave with this address.
     pub fn new(station: u8) -> Self {
         Self { station, stream: Stream::default(), last_request: None, heard: BusTraffic::default() }
-    }
-
-    /// Traffic that was received so far.
-    pub const fn heard(&self) -> &BusTraffic {
-        &self.heard
     }
 
     /// Handles received bytes. Returns whether they complete a new data exchange.
@@ -107,7 +103,7 @@ mod tests {
         let mut listener = Listener::new(5);
         // The test passes the bytes one at a time.
         let news = line.iter().filter(|byte| listener.handle(&[**byte])).count();
-        let heard = listener.heard();
+        let heard = listener.heard;
         assert_eq!((news, heard.exchanges, heard.telegrams, heard.noise), (1, 1, 6, 1));
         assert_eq!(
             (heard.master, heard.output.as_deref(), heard.input.as_deref()),
@@ -122,6 +118,6 @@ mod tests {
         assert!(!listener.handle(&hex("68 05 05 68 02 05 08 AA BB 74 16")));
         assert!(!listener.handle(&hex("68 05 05 68 05 02 7D 01 02 87 16 10 05 02 49 50 16")));
         assert!(!listener.handle(&hex("68 05 05 68 02 05 08 AA BB 74 16")));
-        assert_eq!(listener.heard().input, None);
+        assert_eq!(listener.heard.input, None);
     }
 }

@@ -20,7 +20,8 @@ const READ_TIMEOUT: Duration = Duration::from_millis(10);
 #[derive(Debug)]
 pub struct ListenerDriver {
     news: watch::Receiver<Result<BusTraffic, ProfibusError>>,
-    last: BusTraffic,
+    /// Traffic that was received so far.
+    pub last: BusTraffic,
     station: u8,
     is_over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -45,11 +46,11 @@ impl ListenerDriver {
                         }
                         if len > 0 {
                             listener.handle(&buffer[..len]);
-                            drop(tell.send_replace(Ok(listener.heard().clone())));
+                            drop(tell.send_replace(Ok(listener.heard.clone())));
                         }
                     }
                     Err(error) => {
-                        drop(tell.send_replace(Err(ProfibusError::Gone { text: plain(&error) })));
+                        drop(tell.send_replace(Err(ProfibusError::Gone(plain(&error)))));
                         return;
                     }
                 }
@@ -58,11 +59,6 @@ impl ListenerDriver {
         let thread = thread::Builder::new().name("profibus".to_owned()).spawn(hear);
         let thread = thread.map_err(|error| ProfibusError::Port { port: "thread".to_owned(), text: plain(&error) })?;
         Ok(Self { news, last: BusTraffic::default(), station, is_over, thread: Some(thread) })
-    }
-
-    /// Traffic that was received so far.
-    pub const fn heard(&self) -> &BusTraffic {
-        &self.last
     }
 
     /// Waits until `condition` is true, at most for `longest`.

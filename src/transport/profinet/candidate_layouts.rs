@@ -49,7 +49,7 @@ const FIRST_PORT: u16 = 0x8000;
 /// Corrects a layout with the differences that the device reported. Modules that the device does not have are removed.
 /// Returns `None` if the layout does not change.
 pub fn with_reported_modules(layout: &Layout, mismatches: &[ModuleMismatch]) -> Option<Layout> {
-    let fitted = layout.submodules().iter().filter_map(|submodule| {
+    let fitted = layout.0.iter().filter_map(|submodule| {
         let mut submodule = *submodule;
         for mismatch in mismatches.iter().filter(|mismatch| mismatch.slot == submodule.slot) {
             match mismatch.subslot {

@@ -242,7 +242,7 @@ pub struct Identity {
 /// error.
 pub fn identity(interface: &Interface, found: &StationInfo) -> Result<Identity, ProfinetError> {
     let station = || format!("station '{}'", found.station.name);
-    let address = found.station.address().ok_or_else(|| ProfinetError::NoAddress { station: station() })?;
+    let address = found.station.address().ok_or_else(|| ProfinetError::NoAddress(station()))?;
     let calls = Calls::open(interface, found.mac, SocketAddrV4::new(address, rpc::PORT))?;
     let (vendor, device) = found.station.id.unwrap_or_default();
     let object = rpc::object(found.station.instance.unwrap_or(1), device, vendor);

@@ -32,11 +32,8 @@ pub enum ProfinetError {
         cards: (Mac, Mac),
     },
     /// The device has no IP address, and the settings contain none.
-    #[error("{station} has no IP address")]
-    NoAddress {
-        /// Name of the station.
-        station: String,
-    },
+    #[error("{0} has no IP address")]
+    NoAddress(String),
     /// This computer and the device are in different IP networks.
     #[error("{station} has the address {device}, but this computer has {local_address} in another network")]
     OtherNetwork {
@@ -103,18 +100,12 @@ pub enum ProfinetError {
         /// What is wrong with the answer.
         why: &'static str,
     },
-    /// The modules of the device do not match the layout.
+    /// The modules of the device do not match the layout. Contains at least one difference.
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
-    Modules(
-        /// The differences. There is at least one.
-        Vec<ModuleMismatch>,
-    ),
+    Modules(Vec<ModuleMismatch>),
     /// The device accepted all calls, but never called ApplicationReady.
-    #[error("the device was not ready within {} s", after.as_secs())]
-    NeverReady {
-        /// Waiting time for ApplicationReady.
-        after: Duration,
-    },
+    #[error("the device was not ready within {} s", .0.as_secs())]
+    NeverReady(Duration),
     /// The device is ready, but sends no usable data.
     #[error("no usable data within {} s: {missing}", after.as_secs())]
     NoData {
@@ -125,28 +116,16 @@ pub enum ProfinetError {
     },
     /// The connection is open, but the data of the device is not usable at the moment.
     #[error("the data of the device is not usable: {0}")]
-    Unusable(
-        /// The reason.
-        Unusable,
-    ),
+    Unusable(Unusable),
     /// The device stopped sending, and the watchdog expired.
-    #[error("no cyclic frame received for {} ms", after.as_millis())]
-    Silent {
-        /// Time without a frame.
-        after: Duration,
-    },
+    #[error("no cyclic frame received for {} ms", .0.as_millis())]
+    Silent(Duration),
     /// The device aborted the connection.
     #[error("the device ended the connection: {0}")]
-    Aborted(
-        /// The reason.
-        Status,
-    ),
+    Aborted(Status),
     /// A module was plugged into the device. The device needs the parameters of this module again.
-    #[error("a module was plugged in slot {slot}")]
-    Plugged {
-        /// The slot.
-        slot: u16,
-    },
+    #[error("a module was plugged in slot {0}")]
+    Plugged(u16),
     /// The device did not accept the acknowledgement of an alarm.
     #[error("the device did not accept the acknowledgement of an alarm")]
     AlarmUnanswered,
@@ -180,20 +159,14 @@ pub enum ProfinetError {
         problem: &'static str,
     },
     /// Another program uses UDP port 34964.
-    #[error("another program on this computer uses UDP port 34964 of {address}")]
-    PortTaken {
-        /// The local address.
-        address: Ipv4Addr,
-    },
+    #[error("another program on this computer uses UDP port 34964 of {0}")]
+    PortTaken(Ipv4Addr),
     /// A local socket failed.
     #[error(transparent)]
     Local(#[from] LocalError),
     /// The settings or the request are invalid; nothing was sent.
     #[error("{0}")]
-    Impossible(
-        /// The reason.
-        String,
-    ),
+    Impossible(String),
 }
 
 impl BusError for ProfinetError {

@@ -35,7 +35,7 @@ pub struct Submodule {
 /// The text form is a comma-separated list of `SLOT[.SUBSLOT]:MODULE[/SUBMODULE][:iBYTES][oBYTES]`, for example
 /// `0:1,0.0x8000:1/0x8000,1:0x101:i48,2:0x102:o48`. If the subslot or the submodule is missing, it is 1.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
-pub struct Layout(Vec<Submodule>);
+pub struct Layout(pub(super) Vec<Submodule>);
 
 /// Direction of data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -96,11 +96,6 @@ impl Layout {
             Submodule { slot: 1, subslot: 1, module: input, ident: 1, input: 48, output: 0 },
             Submodule { slot: 2, subslot: 1, module: output, ident: 1, input: 0, output: 48 },
         ])
-    }
-
-    /// Submodules in the order of slot and subslot.
-    pub fn submodules(&self) -> &[Submodule] {
-        &self.0
     }
 
     /// Size of the image in a direction, in bytes.

@@ -21,7 +21,7 @@ impl From<ProfinetError> for LinkError {
                  is on",
             )),
             E::Duplicate { .. } => Self::Silent(cause.advice("set another name on one of the two stations")),
-            E::NoAddress { .. } => Self::Silent(
+            E::NoAddress(_) => Self::Silent(
                 cause.advice("set an address with the tool that sets station names, or with ip= in the target"),
             ),
             E::AddressConflict { .. } => Self::Silent(cause.advice("set another address on one of the two stations")),
@@ -44,15 +44,13 @@ impl From<ProfinetError> for LinkError {
                 Self::Malformed(cause.advice("check that a PROFINET IO device has this name"))
             }
             E::Modules(_) => Self::Size(cause.options(MODULES)),
-            E::NeverReady { .. } => Self::Refused(
+            E::NeverReady(_) => Self::Refused(
                 cause
                     .options(MODULES)
                     .advice("check the data lengths and the parameters: a wrong value usually causes this error"),
             ),
             E::NoData { .. } | E::Unusable(_) => Self::Refused(cause.advice("check the state of the controller")),
-            E::Silent { .. } | E::Aborted(_) | E::Plugged { .. } | E::AlarmUnanswered => {
-                Self::Silent(cause.options(TIMES))
-            }
+            E::Silent(_) | E::Aborted(_) | E::Plugged(_) | E::AlarmUnanswered => Self::Silent(cause.options(TIMES)),
             E::Impossible(_) => Self::Settings(cause),
             E::NoInterface { present, .. } if present.is_empty() => {
                 Self::Settings(cause.advice("add an Ethernet interface: this computer has none"))
@@ -63,7 +61,7 @@ impl From<ProfinetError> for LinkError {
             E::Platform => Self::Local(cause.advice("run armctl on a Linux computer in the network of the controller")),
             E::Privilege => Self::Local(cause.advice(PRIVILEGE)),
             E::Interface { .. } => Self::Local(cause.advice("check the cable and the settings of the interface")),
-            E::PortTaken { .. } => {
+            E::PortTaken(_) => {
                 Self::Silent(cause.advice("close the other program; find it with `ss -lunp sport = 34964`"))
             }
             E::Outdated | E::Ended | E::Local(_) => {

@@ -127,23 +127,14 @@ impl Drop for Owner {
 pub struct Connection {
     owner: Arc<Owner>,
     id: u64,
-    pub(super) views: Views,
+    /// Its states: the current one, and those that follow.
+    pub views: Views,
 }
 
 impl Connection {
-    /// Current state.
-    pub fn view(&self) -> View {
-        self.views.now()
-    }
-
     /// Current counters. The view has counters too, but they are as old as the last change of the view.
     pub fn statistics(&self) -> Statistics {
-        self.with(|core, _| core.statistics()).unwrap_or_else(|| self.view().statistics)
-    }
-
-    /// Waits until `condition` is true, or until the connection is closed.
-    pub async fn until(&mut self, condition: impl FnMut(&View) -> bool) -> View {
-        self.views.until(condition).await
+        self.with(|core, _| core.statistics()).unwrap_or_else(|| self.views.now().statistics)
     }
 
     /// Sends this image, starting with the next cycle; see [`Controller::set_image`].
@@ -159,7 +150,7 @@ impl Connection {
     /// Closes the connection. Cyclic frames continue until the device has answered the release. Fails if the device
     /// does not answer.
     pub async fn close(mut self) -> Result<(), ProfinetError> {
-        let before = self.view().last_error;
+        let before = self.views.now().last_error;
         self.with(Controller::close);
         self.owner.inner.sockets.wake_up();
         self.views.closed(before.as_ref()).await

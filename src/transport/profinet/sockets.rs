@@ -37,7 +37,7 @@ impl Sockets {
         let failed =
             |error: &io::Error| ProfinetError::from(LocalError::new("cannot open a UDP socket for calls", error));
         let udp = UdpSocket::bind((ip.address, rpc::PORT)).map_err(|error| match error.kind() {
-            ErrorKind::AddrInUse => ProfinetError::PortTaken { address: ip.address },
+            ErrorKind::AddrInUse => ProfinetError::PortTaken(ip.address),
             _ => failed(&error),
         })?;
         udp.set_nonblocking(true).map_err(|error| failed(&error))?;

@@ -3,6 +3,7 @@
 //! A frame has a length of 4 bytes (little-endian), a type byte, and the content. The length is the number of bytes
 //! after it. Control frames are JSON. Frequent frames are binary.
 
+use crate::refuse_if;
 use std::io;
 
 use serde::{Deserialize, Serialize};
@@ -364,18 +365,14 @@ impl Frame {
     pub fn parse(bytes: &[u8]) -> Result<Option<(Self, usize)>, WireError> {
         let Some((head, rest)) = bytes.split_first_chunk::<HEAD>() else { return Ok(None) };
         let length = usize::try_from(u32::from_le_bytes(*head)).unwrap_or(usize::MAX);
-        if length > MAX_FRAME {
-            return Err(WireError::TooLong(length));
-        }
+        refuse_if(length > MAX_FRAME, WireError::TooLong(length))?;
         let Some(content) = rest.get(..length) else { return Ok(None) };
         let frame = match content {
             [CONTROL, json @ ..] => Self::Control(serde_json::from_slice(json).map_err(|_| WireError::Invalid)?),
             [IMAGE, bytes @ ..] => Self::Image(bytes.to_vec()),
             [SHOW, rest @ ..] => {
                 let (generation, bits) = rest.split_first_chunk().ok_or(WireError::Invalid)?;
-                if bits.len() % 2 != 0 {
-                    return Err(WireError::Invalid);
-                }
+                refuse_if(bits.len() % 2 != 0, WireError::Invalid)?;
                 let (mask, value) = bits.split_at(bits.len() / 2);
                 let (mask, value) = (mask.to_vec(), value.to_vec());
                 Self::Show(Change { generation: u32::from_le_bytes(*generation), mask, value })

@@ -26,7 +26,7 @@ pub const BUS: Fieldbus = Fieldbus {
     decoder: || Box::<decode::Decoder>::default(),
     simulate: |sim| {
         let hub = simulated::on_loopback(sim)?;
-        let place = hub.endpoint_addresses().first().map(String::as_str).unwrap_or_default();
+        let place = hub.endpoint_addresses.first().map(String::as_str).unwrap_or_default();
         Simulation::at(&simulated::target(place), hub)
     },
 };

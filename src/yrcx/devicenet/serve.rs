@@ -61,7 +61,7 @@ impl Serve for ServeArgs {
         let listen: Vec<Listen> = iter::once(Listen::Tcp(self.slcan_bind)).chain(terminal).collect();
         let hub = simulated::serve(start, setup, &listen, faults_of_option(faults, &FAULTS)?);
         let hub = hub.map_err(|error| bind_failure(&format!("TCP {}", self.slcan_bind), &error))?;
-        let place = hub.endpoint_addresses().first().map(String::as_str).unwrap_or_default();
+        let place = hub.endpoint_addresses.first().map(String::as_str).unwrap_or_default();
         let address: Option<SocketAddr> = place.parse().ok();
         let mut target = format!("{}://{place}?mac={}", SLCAN.name, self.mac);
         if self.bitrate != Bitrate::K500 {
@@ -75,7 +75,7 @@ impl Serve for ServeArgs {
 /// Creates the symbolic link to the pseudo-terminal, if requested.
 #[cfg(unix)]
 fn terminal_link(path: Option<&Path>, hub: &Hub<Controller>) -> Result<Link, Failure> {
-    let (Some(path), Some(terminal)) = (path, hub.endpoint_addresses().get(1)) else { return Ok(None) };
+    let (Some(path), Some(terminal)) = (path, hub.endpoint_addresses.get(1)) else { return Ok(None) };
     TerminalLink::create(path, terminal).map(Some)
 }
 
@@ -98,7 +98,7 @@ struct Adapters {
 
 impl Operator for Adapters {
     fn console(&self, line: &str) -> Result<String, String> {
-        let result = self.hub.with(|device, now| device.application().0.0.console(now, line));
+        let result = self.hub.with(|device, now| device.application.0.0.console(now, line));
         result.unwrap_or_else(|| Err("no controller is connected".to_owned()))
     }
 

@@ -49,7 +49,7 @@ impl Serve for ServeArgs {
 
 impl Operator for Server<Controller> {
     fn console(&self, line: &str) -> Result<String, String> {
-        self.with(|adapter, now| adapter.application().0.0.console(now, line))
+        self.with(|adapter, now| adapter.application.0.0.console(now, line))
     }
 
     fn set_faults(&self, text: Option<&str>) -> Result<(), String> {

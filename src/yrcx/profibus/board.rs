@@ -133,7 +133,7 @@ impl Board {
         });
         match asked.await {
             Ok(found) => Ok(found?),
-            Err(error) => Err(ProfibusError::Gone { text: error.to_string() }.into()),
+            Err(error) => Err(ProfibusError::Gone(error.to_string()).into()),
         }
     }
 }

@@ -70,7 +70,7 @@ impl Operator for Terminal {
                 slave.restart(now);
                 Ok("the slave was switched off and on".to_owned())
             }
-            line => slave.peer_mut().0.console(now, line),
+            line => slave.peer.0.console(now, line),
         })
     }
 

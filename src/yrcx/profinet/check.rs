@@ -41,7 +41,7 @@ pub(super) async fn check_layers(board: &Board, layers: &mut Layers) -> Checked<
     let address = match (found.station.address(), profinet.ip) {
         (None, None) => {
             let station = profinet.station.to_string();
-            return Err(("IP", board.failure(ProfinetError::NoAddress { station })));
+            return Err(("IP", board.failure(ProfinetError::NoAddress(station))));
         }
         (has, Some(wanted)) if has != Some(wanted.address) => {
             let has = has.map_or_else(|| "none".to_owned(), |address| address.to_string());

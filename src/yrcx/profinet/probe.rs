@@ -98,8 +98,9 @@ async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attem
         let is_over = match &answer {
             Err(ProfinetError::Refused { status, .. }) => status.is_owned(),
             // Another attempt is of no use after a success, without a device, or with a problem of this computer.
-            Ok(())
-            | Err(ProfinetError::NotFound { .. } | ProfinetError::Privilege | ProfinetError::PortTaken { .. }) => true,
+            Ok(()) | Err(ProfinetError::NotFound { .. } | ProfinetError::Privilege | ProfinetError::PortTaken(_)) => {
+                true
+            }
             Err(_) => false,
         };
         let text = answer.as_ref().map_or_else(ToString::to_string, |()| "data flows both ways".to_owned());

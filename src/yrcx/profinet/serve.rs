@@ -56,7 +56,7 @@ impl Operator for Server<Controller> {
                 device.restart(now);
                 Ok("the device was switched off and on".to_owned())
             }
-            line => device.application_mut().0.0.console(now, line),
+            line => device.application.0.0.console(now, line),
         })
     }
 

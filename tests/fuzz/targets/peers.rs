@@ -104,9 +104,9 @@ pub fn mqtt(data: &[u8]) {
             seen(format!("{event:?}"));
         }
         seen((session.due(), session.room()));
-        assert!(session.outgoing().len() < 1 << 20, "the output is limited");
+        assert!(session.outgoing.len() < 1 << 20, "the output is limited");
         if control & 0x40 != 0 {
-            session.outgoing().clear();
+            session.outgoing.clear();
         }
     }
     session.disconnect(now);

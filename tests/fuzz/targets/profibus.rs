@@ -22,7 +22,7 @@ pub fn telegram(data: &[u8]) {
         }
         seen(stream.missing());
     }
-    seen(format!("{:?}", listener.heard()));
+    seen(format!("{:?}", listener.heard));
     if let Ok(Parsed::Whole(telegram, length)) = Telegram::parse(data) {
         assert!(length <= data.len());
         assert_eq!(Telegram::parse(&telegram.emit()), Ok(Parsed::Whole(telegram.clone(), telegram.emit().len())));

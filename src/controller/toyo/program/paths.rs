@@ -133,8 +133,7 @@ impl Finder<'_> {
                 Rule::Stops,
                 index,
                 format!(
-                    "no step starts group {number}: without MINI GRP={number}, its counters may have no valid \
-                     position"
+                    "no step starts group {number}: without MINI GRP={number}, its counters may have no valid position"
                 ),
                 "a controller stops with error A7",
             );

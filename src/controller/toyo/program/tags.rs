@@ -200,8 +200,7 @@ impl Tags<'_> {
     fn report_unused(&self, findings: &mut Findings) {
         for label in self.list.iter().filter(|label| !label.used && !label.has_explicit_tag) {
             let hint = format!(
-                "if another program uses the tag of this label, write the tag after the label, such as \
-                                {}=10:",
+                "if another program uses the tag of this label, write the tag after the label, such as {}=10:",
                 label.name
             );
             findings.warning(Rule::UnusedLabel, label.at, format!("no step jumps to label {}", label.name), Some(hint));

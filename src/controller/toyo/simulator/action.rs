@@ -11,92 +11,43 @@ use crate::toyo::table::{Instruction, Op};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Action {
-    /// NOP and TAG.
+    // NOP and TAG.
     Nothing,
     End,
     Stop,
     Return,
     Home,
-    /// PSEL: jumps to the tag whose number is at the selection inputs.
+    // PSEL: jumps to the tag whose number is at the selection inputs.
     Select,
-    Jump {
-        tag: usize,
-        when: Test,
-    },
-    Call {
-        tag: usize,
-        when: Test,
-    },
-    /// BRAC: jumps to the tag whose number is the sum of a counter and a number.
-    Branch {
-        counter: usize,
-        offset: usize,
-    },
+    Jump { tag: usize, when: Test },
+    Call { tag: usize, when: Test },
+    // BRAC: jumps to the tag whose number is the sum of a counter and a number.
+    Branch { counter: usize, offset: usize },
     Wait(Test),
     Delay(Duration),
-    Count {
-        counter: usize,
-        change: Change,
-    },
+    Count { counter: usize, change: Change },
     ClearCounters,
-    /// TIMP: the timer counts up from this value in tenths of a second.
-    StartTimer {
-        timer: usize,
-        tenths: u32,
-    },
+    // TIMP: the timer counts up from this value in tenths of a second.
+    StartTimer { timer: usize, tenths: u32 },
     Choose(Choice),
-    Output {
-        port: Port,
-        mask: Mask,
-        time: Option<Duration>,
-    },
-    OutputCounter {
-        port: Port,
-        counter: usize,
-    },
-    InputCounter {
-        port: Port,
-        counter: usize,
-    },
-    Internal {
-        port: usize,
-        mask: Mask,
-    },
-    OutputAt {
-        task: usize,
-        port: Port,
-        mask: Mask,
-        axis: usize,
-        at_least: bool,
-        place: f64,
-    },
-    /// CANS: cancels the outputs of a task. Task 0 is the task that executes the instruction.
-    CancelOutputs {
-        task: usize,
-    },
+    Output { port: Port, mask: Mask, time: Option<Duration> },
+    OutputCounter { port: Port, counter: usize },
+    InputCounter { port: Port, counter: usize },
+    Internal { port: usize, mask: Mask },
+    OutputAt { task: usize, port: Port, mask: Mask, axis: usize, at_least: bool, place: f64 },
+    // CANS: cancels the outputs of a task. Task 0 is the task that executes the instruction.
+    CancelOutputs { task: usize },
     Move(Move),
-    /// MVC, MVCP: this step and the next step define an arc. The arc goes from the current position through the first
-    /// point to the second point.
+    // MVC, MVCP: this step and the next step define an arc. The arc goes from the current position through the first
+    // point to the second point.
     Arc(Move),
-    BeginGroup {
-        group: i32,
-    },
-    Loop {
-        group: i32,
-        more: usize,
-        done: usize,
-    },
+    BeginGroup { group: i32 },
+    Loop { group: i32, more: usize, done: usize },
     Offset(Target),
-    /// Switches servo power of one axis, or of all axes of the task.
-    Servo {
-        axis: Option<usize>,
-        on: bool,
-    },
+    // Switches servo power of one axis, or of all axes of the task.
+    Servo { axis: Option<usize>, on: bool },
     Torque(Torque),
-    Task {
-        task: usize,
-        order: TaskOrder,
-    },
+    Task { task: usize, order: TaskOrder },
 }
 
 /// Condition of a step.
@@ -156,19 +107,13 @@ pub(super) struct Move {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Target {
     Coordinates(Coordinates),
-    /// A row of the coordinate table, with a counter added to its number (ambiguity R7).
-    Row {
-        point: i32,
-        counter: usize,
-    },
-    /// Start of the last move.
+    // A row of the coordinate table, with a counter added to its number (ambiguity R7).
+    Row { point: i32, counter: usize },
+    // Start of the last move.
     Back,
-    /// Position of an MVM group, or its approach point.
-    Group {
-        group: i32,
-        approach: bool,
-    },
-    /// Coordinates from the host.
+    // Position of an MVM group, or its approach point.
+    Group { group: i32, approach: bool },
+    // Coordinates from the host.
     Host,
 }
 

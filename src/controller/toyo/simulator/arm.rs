@@ -27,7 +27,8 @@ pub(super) struct WallContact {
 
 #[derive(Debug, Clone, Default)]
 pub(super) struct Arm {
-    goal: Coordinates,
+    /// Position at the end of all moves.
+    pub(super) goal: Coordinates,
     segments: Vec<Segment>,
     interrupted: Vec<InterruptedMoves>,
     walls: [Option<Wall>; AXES],
@@ -89,11 +90,6 @@ impl Arm {
             Some(wall) if wall.depth(commanded[axis]) > 0.0 => wall.at,
             _ => commanded[axis],
         })
-    }
-
-    /// Position at the end of all moves.
-    pub(super) const fn goal(&self) -> Coordinates {
-        self.goal
     }
 
     /// Sets the position of the axes at rest.
@@ -332,7 +328,7 @@ mod tests {
     }
 
     fn to(arm: &mut Arm, place: Coordinates, at: Now) {
-        let from = arm.goal();
+        let from = arm.goal;
         let length = minus(&place, &from).into_iter().map(f64::abs).fold(0.0, f64::max);
         arm.begin(&Segment::new(0, Path::line(from, place, length), 0.0, DRIVE, at));
     }
@@ -357,7 +353,7 @@ mod tests {
         let mut arm = Arm::default();
         to(&mut arm, [100.0, 0.0, 0.0, 0.0], ms(0));
         arm.brake(ms(500));
-        assert!(near(arm.goal(), [50.0, 0.0, 0.0, 0.0]), "45 mm, and a ramp of 5");
+        assert!(near(arm.goal, [50.0, 0.0, 0.0, 0.0]), "45 mm, and a ramp of 5");
         assert!(!arm.is_moving(ms(600)));
         arm.resume(0, ms(5000));
         assert!(near(arm.commanded(ms(9000)), [100.0, 0.0, 0.0, 0.0]));
@@ -369,11 +365,11 @@ mod tests {
         let mut arm = Arm::default();
         to(&mut arm, [100.0, 0.0, 0.0, 0.0], ms(0));
         arm.freeze(ms(500));
-        assert!(near(arm.goal(), [45.0, 0.0, 0.0, 0.0]));
+        assert!(near(arm.goal, [45.0, 0.0, 0.0, 0.0]));
         arm.settle(ms(500));
-        arm.begin(&Segment::new(HOST, Path::line(arm.goal(), [0.0, 7.0, 0.0, 0.0], 45.0), 0.0, DRIVE, ms(600)));
+        arm.begin(&Segment::new(HOST, Path::line(arm.goal, [0.0, 7.0, 0.0, 0.0], 45.0), 0.0, DRIVE, ms(600)));
         arm.resume(0, ms(5000));
-        assert!(near(arm.goal(), [100.0, 0.0, 0.0, 0.0]));
+        assert!(near(arm.goal, [100.0, 0.0, 0.0, 0.0]));
     }
 
     #[test]
@@ -386,10 +382,10 @@ mod tests {
         assert!(near(arm.position(ms(500)), [30.0, 0.0, 0.0, 0.0]));
         assert!((arm.push(0, ms(500)) - 15.0).abs() < 1e-6);
         arm.brake(ms(500));
-        assert!(near(arm.goal(), [30.0, 0.0, 0.0, 0.0]));
+        assert!(near(arm.goal, [30.0, 0.0, 0.0, 0.0]));
         arm.set_wall(0, None, ms(600));
         arm.resume(0, ms(600));
-        assert!(near(arm.goal(), [100.0, 0.0, 0.0, 0.0]));
+        assert!(near(arm.goal, [100.0, 0.0, 0.0, 0.0]));
     }
 
     #[test]

@@ -12,7 +12,7 @@ use crate::toyo::table::Group;
 /// Card slot.
 #[derive(Debug, Clone)]
 pub(super) struct Card {
-    inserted: bool,
+    pub(super) inserted: bool,
     content: Option<Box<Content>>,
     transfer: Option<(Transfer, Now)>,
     /// Duration of one transfer.
@@ -28,10 +28,6 @@ enum Transfer {
 impl Card {
     pub(super) const fn new(inserted: bool, time: Duration) -> Self {
         Self { inserted, content: None, transfer: None, time }
-    }
-
-    pub(super) const fn is_in(&self) -> bool {
-        self.inserted
     }
 
     pub(super) const fn is_busy(&self) -> bool {

@@ -3,7 +3,7 @@
 use super::operate::Refusal;
 use super::reply::{Fields, Reply};
 use super::world::{Mode, World};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 use crate::toyo::field::{Mask, Value};
 use crate::toyo::request::{BlockError, Request};
 use crate::toyo::table::Command;
@@ -132,8 +132,7 @@ fn robot_type(world: &mut World, axis: usize, robot_type: i32) -> Reply {
 fn direct(world: &mut World, request: &Request) -> Result<(), Refusal> {
     refuse_if(
         world.switches.machine_changed,
-        "a machine parameter (parameter 2) was changed: switch the power off \
-                                               and on first",
+        "a machine parameter (parameter 2) was changed: switch the power off and on first",
     )?;
     let fields = Fields(request.record());
     let (port, mask) = if let Some(mask) = request.record().mask("data") {

@@ -238,7 +238,7 @@ fn summary(world: &World) -> String {
         (world.switches.estop, "emergency stop"),
         (world.switches.machine_changed, "parameter 2 changed"),
         (world.card.is_busy(), "card busy"),
-        (world.errors.current().is_some(), "error"),
+        (world.errors.current.is_some(), "error"),
     ];
     console::summary(&always, optional)
 }
@@ -246,7 +246,7 @@ fn summary(world: &World) -> String {
 /// Summary, error, position, tasks and outputs.
 fn state(world: &World) -> Vec<(String, String)> {
     let mut rows = vec![("now".to_owned(), summary(world))];
-    if let Some(code) = world.errors.current() {
+    if let Some(code) = world.errors.current {
         rows.push(("error".to_owned(), format!("{code:02X}")));
     }
     let [x, y, z, r] = world.arm.position(world.now);

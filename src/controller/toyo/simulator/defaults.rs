@@ -6,85 +6,52 @@ use crate::toyo::layout::Record;
 use crate::toyo::table::Parameter;
 use crate::toyo::table::parameters::PARAMETERS;
 
-/// Values of parameters in the protocol format. If there are fewer values than fields, the values repeat.
-const VALUES: [(&str, &str); 76] = [
-    ("M01", "0 01 0"),
-    ("M02", "0 01 0"),
-    ("M03", "0 01 0"),
-    ("M04", "0 01 0"),
-    ("M05", "0 01 0"),
-    ("M06", "0 01 0"),
-    ("M07", "0 01 0"),
-    ("M08", "0 01 0"),
-    ("M09", "E"),
-    ("M10", "I"),
-    ("M11", "I"),
-    ("M12", "0 01 0"),
-    ("M13", "0 01 0"),
-    ("M14", "0 01 0"),
-    ("M15", "0 01 0"),
-    ("M16", "01"),
-    ("M17", "01 156K 0000"),
-    ("M18", "01 125K 0000"),
-    ("M19", "0 01 0"),
-    ("M20", "I"),
-    ("M21", "0 01 0"),
-    ("M22", "0 01 0"),
-    ("M23", "0"),
-    ("M24", "0 01 0"),
-    ("M25", "0 01 0"),
-    ("M26", "0 01 0"),
-    ("P01", "+1000.00"),
-    ("P02", "-1000.00"),
-    ("P03", "07"),
-    ("P04", "07"),
-    ("P05", "0000"),
-    ("P06", "+0000.00"),
-    ("P07", "2 2 1 3"),
-    ("P08", "010.0 050.0"),
-    ("P09", "010.0 050.0"),
-    ("P10", "010.0 050.0"),
-    ("P11", "010.0 050.0"),
-    ("P12", "00.01"),
-    ("P13", ">= +0000.00 0 01 0"),
-    ("P14", ">= +0000.00 0 01 0"),
-    ("P15", ">= +0000.00 0 01 0"),
-    ("P16", ">= +0000.00 0 01 0"),
-    ("P17", "+000.00"),
-    ("P18", "20.00"),
-    ("E01", "X Y Z R"),
-    ("E02", "00.05"),
-    ("E03", "20000"),
-    ("E04", "02000"),
-    ("E05", "1"),
-    ("E06", "1000"),
-    ("E07", "002.0 020.0 100.0"),
-    ("E08", "002.0 020.0 100.0"),
-    ("E09", "002.0 020.0 100.0"),
-    ("E10", "002.0 020.0 100.0"),
-    ("E11", "1"),
-    ("E12", "1"),
-    ("E13", "+0000.00"),
-    ("E14", "20.000"),
-    ("E15", "2000"),
-    ("E16", "4"),
-    ("E17", "i"),
-    ("E18", "090"),
-    ("E19", "5000"),
-    ("E20", "1"),
-    ("E21", "999"),
-    ("E22", "2000 0000 0000 0000"),
-    ("E23", "I"),
-    ("E24", "0"),
-    ("E25", "0"),
-    ("E26", "0"),
-    ("E27", "00"),
-    ("U03", "005"),
-    ("U21", "000.0"),
-    ("U22", "000.00"),
-    // From here on: tables with equal rows.
-    ("T5", "3.00"),
-    ("T4.S1", "001 000 000 000"),
+/// Values in the protocol format, with the ids of the parameters and tables that have them. If a parameter has more
+/// fields than values, the values repeat.
+#[rustfmt::skip] // A line per id would hide the groups.
+const VALUES: [(&str, &[&str]); 41] = [
+    ("0 01 0", &["M01", "M02", "M03", "M04", "M05", "M06", "M07", "M08", "M12", "M13", "M14", "M15", "M19",
+        "M21", "M22", "M24", "M25", "M26"]),
+    ("E", &["M09"]),
+    ("I", &["M10", "M11", "M20", "E23"]),
+    ("01", &["M16"]),
+    ("01 156K 0000", &["M17"]),
+    ("01 125K 0000", &["M18"]),
+    ("0", &["M23", "E24", "E25", "E26"]),
+    ("+1000.00", &["P01"]),
+    ("-1000.00", &["P02"]),
+    ("07", &["P03", "P04"]),
+    ("0000", &["P05", "T4.S2"]),
+    ("+0000.00", &["P06", "E13", "T4.S5"]),
+    ("2 2 1 3", &["P07"]),
+    ("010.0 050.0", &["P08", "P09", "P10", "P11"]),
+    ("00.01", &["P12"]),
+    (">= +0000.00 0 01 0", &["P13", "P14", "P15", "P16"]),
+    ("+000.00", &["P17"]),
+    ("20.00", &["P18"]),
+    ("X Y Z R", &["E01"]),
+    ("00.05", &["E02"]),
+    ("20000", &["E03"]),
+    ("02000", &["E04"]),
+    ("1", &["E05", "E11", "E12", "E20"]),
+    ("1000", &["E06"]),
+    ("002.0 020.0 100.0", &["E07", "E08", "E09", "E10"]),
+    ("20.000", &["E14"]),
+    ("2000", &["E15"]),
+    ("4", &["E16"]),
+    ("i", &["E17"]),
+    ("090", &["E18"]),
+    ("5000", &["E19"]),
+    ("999", &["E21"]),
+    ("2000 0000 0000 0000", &["E22"]),
+    ("00", &["E27"]),
+    ("005", &["U03"]),
+    ("000.0", &["U21"]),
+    ("000.00", &["U22"]),
+    ("3.00", &["T5"]),
+    ("001 000 000 000", &["T4.S1"]),
+    ("01 02 03", &["T4.S3"]),
+    ("a +0000.00 +0000.00", &["T4.S4"]),
 ];
 
 /// Speeds of the first rows in 0.1 mm/s. All later rows have the last of these speeds.
@@ -93,7 +60,7 @@ const SPEEDS: [i32; 10] = [100, 200, 500, 1000, 2000, 3000, 4000, 5000, 8000, 10
 /// Values of a parameter, or of a row of a table.
 ///
 /// # Panics
-/// Never: a test checks the format of every value.
+/// Never: a test checks that every parameter has values in its format.
 pub(super) fn values(parameter: &Parameter, row: i32) -> Vec<Value> {
     match parameter.id {
         "T1" => return vec![Value::Number(0); 4],
@@ -105,18 +72,9 @@ pub(super) fn values(parameter: &Parameter, row: i32) -> Vec<Value> {
         "T3" => return vec![Value::Number(10 * row)],
         _ => {}
     }
-    let text = VALUES.iter().find(|(id, _)| *id == parameter.id).map_or_else(|| table(parameter.id), |(_, text)| text);
+    let (text, _) = VALUES.iter().find(|(_, ids)| ids.contains(&parameter.id)).expect("every parameter has defaults");
     let fields = parameter.fields().iter().zip(text.split(' ').cycle());
     fields.map(|(field, text)| field.read(text).expect("the defaults are in form")).collect()
-}
-
-fn table(id: &str) -> &'static str {
-    match id {
-        "T4.S2" => "0000",
-        "T4.S3" => "01 02 03",
-        "T4.S4" => "a +0000.00 +0000.00",
-        _ => "+0000.00",
-    }
 }
 
 /// All parameters without rows, in order.

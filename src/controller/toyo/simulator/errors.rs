@@ -84,16 +84,12 @@ pub(super) enum Entry {
 
 #[derive(Debug, Clone, Default)]
 pub(super) struct Errors {
-    current: Option<u8>,
+    pub(super) current: Option<u8>,
     /// History entries, newest first.
     history: VecDeque<Entry>,
 }
 
 impl Errors {
-    pub(super) const fn current(&self) -> Option<u8> {
-        self.current
-    }
-
     /// Raises an error. The first error stays the current error until it is cancelled. The history contains all errors.
     pub(super) fn raise(&mut self, code: u8, at: Duration) {
         self.current = self.current.or(Some(code));

@@ -46,7 +46,7 @@ impl World {
         if self.arm.known[axis] {
             legs.insert(0, (self.machine.fast[axis], fast));
         }
-        let (ramp, mut at, mut from) = (self.ramp(1), begin, self.arm.goal());
+        let (ramp, mut at, mut from) = (self.ramp(1), begin, self.arm.goal);
         for (coordinate, speed) in legs {
             let mut to = from;
             to[axis] = coordinate;
@@ -93,7 +93,7 @@ impl World {
     pub(super) fn begin_jog(&mut self, axis: usize, word: &'static str) -> Result<(), u8> {
         let upwards = word.starts_with('+');
         let sign = if upwards { 1.0 } else { -1.0 };
-        let from = self.arm.goal();
+        let from = self.arm.goal;
         let [low, high] = self.settings.jog[axis];
         let bound = if upwards { self.settings.plus[axis] } else { self.settings.minus[axis] };
         let limit = self.arm.known[axis].then_some((bound, upwards));

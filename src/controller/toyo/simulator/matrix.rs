@@ -4,7 +4,7 @@ use super::errors::code;
 use super::memory::index;
 use super::motion::{Coordinates, minus};
 use super::world::World;
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 use crate::toyo::field::Value;
 
 /// Number of linear axes of a matrix: axes 1 to 3. Axis 4 (`TURN`) rotates.

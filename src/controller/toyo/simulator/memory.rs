@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::action::{Action, action, place};
 use super::defaults;
 use super::motion::{AXES, Coordinates};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 use crate::toyo::field::{Field, Form, Value};
 use crate::toyo::layout::Record;
 use crate::toyo::table::parameters::PARAMETERS;

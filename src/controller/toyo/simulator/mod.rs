@@ -246,7 +246,7 @@ impl Simulator {
             executing: world.is_executing(),
             paused: world.is_paused(),
             origin: world.knows_origin(),
-            error: world.errors.current(),
+            error: world.errors.current,
             host: world.switches.host,
             servo: world.has_servo(),
             tasks: std::array::from_fn(|index| (world.tasks[index].running, world.tasks[index].step)),
@@ -282,10 +282,7 @@ impl Simulator {
     fn take_block(&mut self) {
         let IncomingBlock { bytes, damaged } = std::mem::take(&mut self.incoming);
         // Noise and damaged blocks get no answer (TO 1-3). A recorded controller may have been silent.
-        if damaged
-            || self.replay.is_silent()
-            || bytes.is_empty()
-            || !bytes.iter().all(|byte| matches!(byte, b' '..=b'~'))
+        if damaged || self.replay.is_silent || bytes.is_empty() || !bytes.iter().all(|byte| matches!(byte, b' '..=b'~'))
         {
             return;
         }

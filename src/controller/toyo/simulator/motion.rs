@@ -54,7 +54,7 @@ pub(super) struct Arc {
     from: Coordinates,
     to: Coordinates,
     center: Coordinates,
-    radius: f64,
+    pub(super) radius: f64,
     /// Unit vectors of the plane. The first vector points to the start.
     basis: [Coordinates; 2],
     angle: f64,
@@ -219,10 +219,6 @@ impl Arc {
         let last = minus(&p2, &center);
         let angle = dot(&last, &second).atan2(dot(&last, &first)).rem_euclid(TAU);
         Some(Self { from, to, center, radius, basis: [first, second], angle })
-    }
-
-    pub(super) const fn radius(&self) -> f64 {
-        self.radius
     }
 
     fn at(&self, share: f64) -> Coordinates {
@@ -409,7 +405,7 @@ mod tests {
         let half = 50.0 * 2f64.sqrt();
         let arc = Arc::through_points([100.0, 0.0, 5.0, 0.0], [half, half, 0.0, 0.0], [0.0, 100.0, 15.0, 0.0], &[0, 1]);
         let arc = arc.unwrap();
-        assert!(near(arc.radius(), 100.0));
+        assert!(near(arc.radius, 100.0));
         let path = Path::Arc(arc);
         assert!(near(path.length(), 100.0 * TAU / 4.0));
         let middle = path.at(path.length() / 2.0);

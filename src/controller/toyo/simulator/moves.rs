@@ -6,7 +6,7 @@ use super::motion::{AXES, Arc, Coordinates, Drive, Path, Segment, minus, plus};
 use super::position_effects::NEAR;
 use super::task::{Flow, Wait};
 use super::world::World;
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 
 /// Number of rows in the coordinate table.
 const LAST_POINT: i32 = 999;
@@ -31,7 +31,7 @@ impl World {
         }
         let axes = self.machine.tasks[index].axes.clone();
         self.check_motion_allowed(&axes)?;
-        let from = self.arm.goal();
+        let from = self.arm.goal;
         let (base, to) = self.resolve_target(index, &order, &from)?;
         self.within(&axes, &self.line(index, from, base, order.line), code::target)?;
         let path = self.line(index, from, to, order.line);
@@ -47,12 +47,12 @@ impl World {
         let axes = self.machine.tasks[index].clone();
         self.check_motion_allowed(&axes.axes)?;
         refuse_if(axes.space < 2, code::ARC_DATA)?;
-        let from = self.arm.goal();
+        let from = self.arm.goal;
         let (via_base, via) = self.resolve_target(index, &first, &from)?;
         let (to_base, to) = self.resolve_target(index, &second, &via)?;
         let round = &axes.axes[..axes.space];
         let arc = |via: Coordinates, to: Coordinates| {
-            Arc::through_points(from, via, to, round).filter(|arc| arc.radius() <= MAX_RADIUS).map(Path::Arc)
+            Arc::through_points(from, via, to, round).filter(|arc| arc.radius <= MAX_RADIUS).map(Path::Arc)
         };
         if let Some(base) = arc(via_base, to_base) {
             self.within(&axes.axes, &base, code::target)?;

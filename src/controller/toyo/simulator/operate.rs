@@ -8,7 +8,7 @@ use super::memory::{MAX_STEPS, TASKS};
 use super::routine::Routine;
 use super::settings::Special;
 use super::world::{Kind, Mode, World};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 
 /// Reason of a refusal.
 pub(super) type Refusal = &'static str;
@@ -23,14 +23,13 @@ impl World {
     fn check_startable(&self) -> Result<(), Refusal> {
         self.idle()?;
         self.unchanged()?;
-        if self.errors.current().is_some() { Err("an error is active: cancel it first") } else { Ok(()) }
+        if self.errors.current.is_some() { Err("an error is active: cancel it first") } else { Ok(()) }
     }
 
     /// Refuses execution if parameter 2 was changed: the controller then needs a power cycle.
     fn unchanged(&self) -> Result<(), Refusal> {
         if self.switches.machine_changed {
-            Err("a machine parameter (parameter 2) was changed: switch the power off \
-                                                and on first")
+            Err("a machine parameter (parameter 2) was changed: switch the power off and on first")
         } else {
             Ok(())
         }
@@ -199,9 +198,7 @@ impl World {
     pub(super) fn servo(&mut self, on: bool) -> Result<(), Refusal> {
         self.unchanged()?;
         self.idle()?;
-        if on && (self.switches.estop || self.errors.current().is_some()) {
-            return Err("an error is active: cancel it first");
-        }
+        refuse_if(on && (self.switches.estop || self.errors.current.is_some()), "an error is active: cancel it first")?;
         self.switches.servo = std::array::from_fn(|axis| on && axis < self.axes);
         Ok(())
     }

@@ -43,7 +43,7 @@ fn follow_status(world: &mut World, record: &Record) {
             world.arm.known.fill(status.homed());
             switches.machine_changed = status.needs_power_cycle();
         }
-        1 if world.errors.current() != Some(byte).filter(|code| *code != 0) => {
+        1 if world.errors.current != Some(byte).filter(|code| *code != 0) => {
             world.errors.cancel();
             if byte != 0 {
                 world.errors.raise(byte, world.powered());

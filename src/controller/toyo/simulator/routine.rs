@@ -16,17 +16,10 @@ use crate::toyo::table::Pallet;
 /// Routine that runs in a task.
 #[derive(Debug, Clone)]
 pub(super) enum Routine {
-    /// A move to a row of the coordinate table.
-    Point {
-        row: i32,
-        begun: bool,
-    },
-    /// An easy program, with the number of the current repetition, from 1.
-    Easy {
-        program: usize,
-        round: i32,
-        part: EasyPart,
-    },
+    // A move to a row of the coordinate table.
+    Point { row: i32, begun: bool },
+    // An easy program, with the number of the current repetition, from 1.
+    Easy { program: usize, round: i32, part: EasyPart },
     Palletizing(Box<Palletizing>),
 }
 

@@ -7,7 +7,7 @@ use super::memory::{TASKS, TagLookup};
 use super::task::{Flow, Wait};
 use super::trace::What;
 use super::world::World;
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 use crate::toyo::field::Mask;
 
 /// Maximum nesting of subroutines. The manual gives no limit.
@@ -368,7 +368,7 @@ impl World {
         match target {
             Target::Coordinates(place) => Ok(place),
             Target::Row { point, counter } => self.row(index, point, counter),
-            Target::Back => Ok(self.tasks[index].from.unwrap_or_else(|| self.arm.goal())),
+            Target::Back => Ok(self.tasks[index].from.unwrap_or(self.arm.goal)),
             Target::Group { group, approach } => self.place_of_group(index, group, approach),
             Target::Host => Err(code::COMMAND),
         }

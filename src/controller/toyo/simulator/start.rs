@@ -21,17 +21,17 @@ use super::settings::{Machine, Settings};
 use super::task::Task;
 use super::trace::Trace;
 use super::world::{COUNTERS, Mode, Switches, TIMERS, World};
-use crate::Now;
 use crate::simulator::console;
 use crate::simulator::recording::{Recording, Replayable};
-use crate::simulator::refuse_if;
 use crate::simulator::run_options::RunOptions;
 use crate::simulator::start::{self, Event, Source, Table, default_entry, default_text};
 use crate::simulator::timeline::Timeline;
+use crate::simulator::with_defaults;
 use crate::toyo::field::{Mask, Value};
 use crate::toyo::layout::Record;
 use crate::toyo::request::{Request, instruction};
 use crate::toyo::table::{Command, KCA};
+use crate::{Now, refuse_if};
 
 /// Start state of a simulated controller; [`Start::parse`] reads it (see [`EXAMPLE`]).
 #[derive(Debug, Clone)]
@@ -147,78 +147,42 @@ impl Replayable for Start {
     }
 }
 
-#[derive(Debug, Deserialize)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an independent key")]
-#[serde(default, deny_unknown_fields)]
-struct Entries {
-    model: Spanned<String>,
-    version: Spanned<String>,
-    robot_types: Spanned<Vec<i32>>,
-    axes: Spanned<usize>,
-    mode: Mode,
-    palletizing: bool,
-    host: bool,
-    pendant: bool,
-    servo: bool,
-    origin: bool,
-    position: Spanned<[f64; AXES]>,
-    points: BTreeMap<String, Table<[f64; AXES]>>,
-    speeds: Table<f64>,
-    ramps: Table<f64>,
-    counters: Table<u16>,
-    inputs: Table<String>,
-    outputs: Table<String>,
-    steps: Table<Vec<Spanned<String>>>,
-    /// Host commands, without `@`.
-    write: Vec<Spanned<String>>,
-    error: Option<Spanned<String>>,
-    history: Vec<Spanned<HistoryEntry>>,
-    hours: u32,
-    card: Slot,
-    card_seconds: u64,
-    seed: u64,
-    answer_delay_ms: u64,
-    busy: Spanned<f64>,
-    instruction_us: Spanned<u64>,
-    eeprom_limit: u64,
-    #[serde(rename = "event")]
-    events: Vec<Spanned<Event>>,
-}
-
-impl Default for Entries {
-    fn default() -> Self {
-        Self {
-            model: default_text(KCA[2]),
-            version: default_text("4.00"),
-            robot_types: default_entry(vec![0]),
-            axes: default_entry(AXES),
-            mode: Mode::Automatic,
-            palletizing: false,
-            host: false,
-            pendant: false,
-            servo: true,
-            origin: false,
-            position: default_entry([0.0; AXES]),
-            points: BTreeMap::new(),
-            speeds: Table::new(),
-            ramps: Table::new(),
-            counters: Table::new(),
-            inputs: Table::new(),
-            outputs: Table::new(),
-            steps: Table::new(),
-            write: Vec::new(),
-            error: None,
-            history: Vec::new(),
-            hours: 0,
-            card: Slot::None,
-            card_seconds: 2,
-            seed: 0,
-            answer_delay_ms: 0,
-            busy: default_entry(0.0),
-            instruction_us: default_entry(1000),
-            eeprom_limit: 0,
-            events: Vec::new(),
-        }
+with_defaults! {
+    #[derive(Debug, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    struct Entries {
+        model: Spanned<String> = default_text(KCA[2]),
+        version: Spanned<String> = default_text("4.00"),
+        robot_types: Spanned<Vec<i32>> = default_entry(vec![0]),
+        axes: Spanned<usize> = default_entry(AXES),
+        mode: Mode,
+        palletizing: bool,
+        host: bool,
+        pendant: bool,
+        servo: bool = true,
+        origin: bool,
+        position: Spanned<[f64; AXES]> = default_entry([0.0; AXES]),
+        points: BTreeMap<String, Table<[f64; AXES]>>,
+        speeds: Table<f64>,
+        ramps: Table<f64>,
+        counters: Table<u16>,
+        inputs: Table<String>,
+        outputs: Table<String>,
+        steps: Table<Vec<Spanned<String>>>,
+        /// Host commands, without `@`.
+        write: Vec<Spanned<String>>,
+        error: Option<Spanned<String>>,
+        history: Vec<Spanned<HistoryEntry>>,
+        hours: u32,
+        card: Slot = Slot::None,
+        card_seconds: u64 = 2,
+        seed: u64,
+        answer_delay_ms: u64,
+        busy: Spanned<f64> = default_entry(0.0),
+        instruction_us: Spanned<u64> = default_entry(1000),
+        eeprom_limit: u64,
+        #[serde(rename = "event")]
+        events: Vec<Spanned<Event>>,
     }
 }
 
@@ -297,9 +261,7 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
         return Err(source.error(&entries.model, format!("model must be one of {}, or other", KCA.join(", "))));
     }
     let axes = *entries.axes.get_ref();
-    if !(1..=AXES).contains(&axes) {
-        return Err(source.error(&entries.axes, "axes must be from 1 to 4"));
-    }
+    refuse_if(!(1..=AXES).contains(&axes), source.error(&entries.axes, "axes must be from 1 to 4"))?;
     let version = source.read(&entries.version, |version| {
         hundredths(version).ok_or_else(|| "write a version, for example \"4.00\"".to_owned())
     })?;
@@ -334,17 +296,7 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
         memory,
         settings,
         machine,
-        switches: Switches {
-            host: false,
-            pendant: false,
-            estop: false,
-            servo: [false; AXES],
-            mode: Mode::Automatic,
-            palletizing: false,
-            machine_changed: false,
-            slaves_ready: true,
-            battery_low: false,
-        },
+        switches: Switches { slaves_ready: true, ..Switches::default() },
         ports: Ports::default(),
         arm,
         synchronized: false,

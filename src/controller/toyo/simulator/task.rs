@@ -4,6 +4,7 @@ use super::action::{Move, Test, Torque};
 use super::motion::Coordinates;
 use super::routine::Routine;
 use crate::Now;
+use crate::simulator::with_defaults;
 
 /// Wait condition of a running task.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,63 +38,40 @@ pub(super) enum Flow {
     End,
 }
 
-#[derive(Debug, Clone)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an independent state")]
-pub(super) struct Task {
-    /// Whether the program of the task was started and has not ended.
-    pub(super) running: bool,
-    /// Whether TSTO stopped the task.
-    pub(super) stopped: bool,
-    /// Current step, from 1.
-    pub(super) step: usize,
-    /// Step with which the task continues after the wait.
-    pub(super) next: usize,
-    pub(super) wait: Wait,
-    /// Steps with which the task continues after each called subroutine.
-    pub(super) stack: Vec<usize>,
-    /// Row of the speed table for the next moves.
-    pub(super) speed: i32,
-    /// Rows of the acceleration table for the two ramps of the next moves.
-    pub(super) ramps: [i32; 2],
-    /// Share of the deceleration during which the next move already runs, at pass points.
-    pub(super) pass: f64,
-    pub(super) offset: Coordinates,
-    /// Position at the start of the last move.
-    pub(super) from: Option<Coordinates>,
-    /// Torque limit of the next move.
-    pub(super) torque: Option<Torque>,
-    /// Torque limit of the current move.
-    pub(super) limited: Option<Torque>,
-    /// Whether the escape input ends the current move.
-    pub(super) escape: bool,
-    /// Coordinates from the host that no move has used yet, with their row of the speed table.
-    pub(super) supplied: Option<(Coordinates, i32)>,
-    pub(super) routine: Option<Routine>,
-    /// Whether the routine runs a part of the program at present.
-    pub(super) called: bool,
-}
-
-impl Default for Task {
-    fn default() -> Self {
-        Self {
-            running: false,
-            stopped: false,
-            step: 1,
-            next: 1,
-            wait: Wait::Ready(Now::ZERO),
-            stack: Vec::new(),
-            speed: 1,
-            ramps: [1, 1],
-            pass: 1.0,
-            offset: Coordinates::default(),
-            from: None,
-            torque: None,
-            limited: None,
-            escape: false,
-            supplied: None,
-            routine: None,
-            called: false,
-        }
+with_defaults! {
+    #[derive(Debug, Clone)]
+    pub(super) struct Task {
+        /// Whether the program of the task was started and has not ended.
+        pub(super) running: bool,
+        /// Whether TSTO stopped the task.
+        pub(super) stopped: bool,
+        /// Current step, from 1.
+        pub(super) step: usize = 1,
+        /// Step with which the task continues after the wait.
+        pub(super) next: usize = 1,
+        pub(super) wait: Wait = Wait::Ready(Now::ZERO),
+        /// Steps with which the task continues after each called subroutine.
+        pub(super) stack: Vec<usize>,
+        /// Row of the speed table for the next moves.
+        pub(super) speed: i32 = 1,
+        /// Rows of the acceleration table for the two ramps of the next moves.
+        pub(super) ramps: [i32; 2] = [1, 1],
+        /// Share of the deceleration during which the next move already runs, at pass points.
+        pub(super) pass: f64 = 1.0,
+        pub(super) offset: Coordinates,
+        /// Position at the start of the last move.
+        pub(super) from: Option<Coordinates>,
+        /// Torque limit of the next move.
+        pub(super) torque: Option<Torque>,
+        /// Torque limit of the current move.
+        pub(super) limited: Option<Torque>,
+        /// Whether the escape input ends the current move.
+        pub(super) escape: bool,
+        /// Coordinates from the host that no move has used yet, with their row of the speed table.
+        pub(super) supplied: Option<(Coordinates, i32)>,
+        pub(super) routine: Option<Routine>,
+        /// Whether the routine runs a part of the program at present.
+        pub(super) called: bool,
     }
 }
 

@@ -24,7 +24,7 @@ pub(super) const TIMERS: usize = 10;
 const MAX_TIMER_TENTHS: u32 = 9999;
 
 /// States that the operator or the host can switch.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent switch")]
 pub(super) struct Switches {
     pub(super) host: bool,
@@ -39,9 +39,10 @@ pub(super) struct Switches {
     pub(super) battery_low: bool,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Mode {
+    #[default]
     Automatic,
     Step,
     Program,
@@ -338,8 +339,7 @@ impl World {
 
     /// System outputs SY01: error, positioning complete, origin, READY.
     pub(super) fn system_outputs(&self) -> u8 {
-        let bits =
-            [self.errors.current().is_some(), !self.arm.is_moving(self.now), self.knows_origin(), self.is_ready()];
+        let bits = [self.errors.current.is_some(), !self.arm.is_moving(self.now), self.knows_origin(), self.is_ready()];
         bits.iter().rev().fold(0, |byte, bit| byte << 1 | u8::from(*bit))
     }
 
@@ -354,7 +354,7 @@ impl World {
 
     /// Whether a start is possible (status 4 bit 4).
     pub(super) fn is_ready(&self) -> bool {
-        self.has_servo() && self.errors.current().is_none() && !self.switches.machine_changed
+        self.has_servo() && self.errors.current.is_none() && !self.switches.machine_changed
     }
 
     /// Power-on time.
@@ -379,7 +379,7 @@ impl World {
         let waits = self.tasks.iter().any(|task| task.running && matches!(task.wait, Wait::Test(_)));
         let bits: [bool; 8] = match page {
             0 => [
-                self.errors.current().is_some(),
+                self.errors.current.is_some(),
                 self.is_executing(),
                 self.is_paused(),
                 self.arm.homing.is_some(),
@@ -388,7 +388,7 @@ impl World {
                 false,
                 self.switches.machine_changed,
             ],
-            1 => return self.errors.current().unwrap_or_default(),
+            1 => return self.errors.current.unwrap_or_default(),
             2 => {
                 let kind = self.kind();
                 [
@@ -408,7 +408,7 @@ impl World {
                 false,
                 false,
                 self.switches.slaves_ready,
-                self.card.is_in(),
+                self.card.inserted,
                 self.card.is_reading(),
                 self.card.is_writing(),
             ],

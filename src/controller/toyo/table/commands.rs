@@ -1,8 +1,8 @@
 //! The 62 commands (TO 2-1).
 
 use super::fields::{
-    AXIS, COUNT, COUNTER, MASK, PORT, R, SPEED, STATION, STEP, TAG, TASK, TIME, TIMER, X, Y, Z, digits, fixed, plain,
-    word, words,
+    AXIS, CC_LINK_RATES, COUNT, COUNTER, MASK, PORT, R, SPEED, STATION, STEP, TAG, TASK, TIME, TIMER, X, Y, Z, digits,
+    fixed, word, words,
 };
 use super::palletizing::MODE;
 use super::{ALL_MODELS, KCA, KCA20, Models};
@@ -161,8 +161,6 @@ const STATES: &[Word] = &[
     word("DESTI", "destination side"),
     word("END", "end program"),
 ];
-
-const CC_LINK_RATES: &[Word] = &[plain("156K"), plain("625K"), plain("2.5M"), plain("5M"), plain("10M")];
 
 const fn bits(name: &'static str, about: &'static str) -> Field {
     Field::new(name, Form::Bits, about)

@@ -60,14 +60,8 @@ pub const TIME: Field = fixed("time", (3, 1), 0, 9999, "time").unit("s");
 pub const GROUP: Field = digits("group", 2, 1, 32, "MVM group");
 pub const POINT: Field = digits("point", 3, 1, 999, "row of the coordinate table");
 /// Point field in which 0 means that only the counter gives the row (ambiguity R7).
-pub const POINT_OR_COUNTER: Field = digits(
-    "point",
-    3,
-    0,
-    999,
-    "row of the coordinate table; with 0, only the counter \
-                                                                gives the row",
-);
+pub const POINT_OR_COUNTER: Field =
+    digits("point", 3, 0, 999, "row of the coordinate table; with 0, only the counter gives the row");
 /// Speed field in which 0 means the speed of the last SPD (ambiguity R7). Rows above 10 cannot be written in this field
 /// (ambiguity R6).
 pub const SPEED: Field = digits("speed", 2, 0, 10, "row of the speed table; 0 means the row of the last SPD");
@@ -79,6 +73,7 @@ pub const ARRIVAL: Field =
     words("arrival", &[word("POST", "stop there"), word("PASS", "pass by")], "whether to stop at the position");
 pub const SWITCH: &[Word] = &[word("ON", "on"), word("OFF", "off")];
 pub const AXIS: &[Word] = &[plain("X"), plain("Y"), plain("Z"), plain("R")];
+pub const CC_LINK_RATES: &[Word] = &[plain("156K"), plain("625K"), plain("2.5M"), plain("5M"), plain("10M")];
 pub const VALID: &[Word] = &[word("I", "invalid"), word("E", "valid")];
 
 /// Comparison, which always has two characters (ambiguity R2).

@@ -4,8 +4,8 @@
 //! use), `T` tables.
 
 use super::fields::{
-    AIM, AXIS, BIT, COUNTER, GROUP, POINT, PORT, R, SIDE, STATION, VALID, X, Y, Z, axes, digits, fixed, place, plain,
-    word, words,
+    AIM, AXIS, BIT, CC_LINK_RATES, COUNTER, GROUP, POINT, PORT, R, SIDE, STATION, VALID, X, Y, Z, axes, digits, fixed,
+    place, plain, word, words,
 };
 use super::{ALL_MODELS, FROM_3_36, KCA, KCA20, KCA25, Models};
 use crate::toyo::field::{Field, Form, Number, Word};
@@ -105,17 +105,13 @@ fn is_key(word: &str, text: &str) -> bool {
     (word.ends_with('=') || matches!(word, "V" | "A" | "LIM")) && text.starts_with(word)
 }
 
-const fn single(
-    id: &'static str,
-    name: &'static str,
-    text: &'static str,
-    fields: &'static [Field],
-    about: &'static str,
-) -> Parameter {
+type Text = &'static str;
+
+const fn single(id: Text, name: Text, text: Text, fields: &'static [Field], about: Text) -> Parameter {
     Parameter { id, name, about, layout: Layout::new(text, fields), key: Layout::words(id), only_on: ALL_MODELS }
 }
 
-const fn table(id: &'static str, name: &'static str, key: Layout, layout: Layout, about: &'static str) -> Parameter {
+const fn table(id: Text, name: Text, key: Layout, layout: Layout, about: Text) -> Parameter {
     Parameter { id, name, about, layout, key, only_on: ALL_MODELS }
 }
 
@@ -131,35 +127,27 @@ const PORT_BIT: &[Field] = &[STATION, PORT, BIT];
 const OWN_PORT_BIT: &[Field] = &[digits("station", 1, 0, 0, "I/O station"), PORT, BIT];
 /// A port number. Only ports up to 13 are valid (ambiguity R12).
 const DIRECT: Field = digits("port", 2, 1, 13, "port");
-const DIRECT_BITS: &[Field] = &[
-    STATION.named("station1"),
-    DIRECT.named("port1"),
-    BIT.named("bit1"),
-    STATION.named("station2"),
-    DIRECT.named("port2"),
-    BIT.named("bit2"),
-    STATION.named("station3"),
-    DIRECT.named("port3"),
-    BIT.named("bit3"),
-    STATION.named("station4"),
-    DIRECT.named("port4"),
-    BIT.named("bit4"),
-];
-const TASK_BITS: &[Field] = &[
-    STATION.named("station1"),
-    PORT.named("port1"),
-    BIT.named("bit1"),
-    STATION.named("station2"),
-    PORT.named("port2"),
-    BIT.named("bit2"),
-    STATION.named("station3"),
-    PORT.named("port3"),
-    BIT.named("bit3"),
-    STATION.named("station4"),
-    PORT.named("port4"),
-    BIT.named("bit4"),
-];
-const CC_LINK_RATES: &[Word] = &[plain("156K"), plain("625K"), plain("2.5M"), plain("5M"), plain("10M")];
+const DIRECT_BITS: &[Field] = &four_bits(DIRECT);
+const TASK_BITS: &[Field] = &four_bits(PORT);
+
+/// Four bits, for example one for each task.
+const fn four_bits(port: Field) -> [Field; 12] {
+    [
+        STATION.named("station1"),
+        port.named("port1"),
+        BIT.named("bit1"),
+        STATION.named("station2"),
+        port.named("port2"),
+        BIT.named("bit2"),
+        STATION.named("station3"),
+        port.named("port3"),
+        BIT.named("bit3"),
+        STATION.named("station4"),
+        port.named("port4"),
+        BIT.named("bit4"),
+    ]
+}
+
 /// The sample of the manual also has 156K, but this rate belongs to CC-Link (ambiguity R10).
 const DEVICENET_RATES: &[Word] = &[plain("125K"), plain("250K"), plain("500K")];
 const OPTIONS: Field = digits("options", 4, 0, 9999, "option flags");
@@ -191,45 +179,21 @@ const LOGICS: &[Field] =
 const LEADS: &[Field] = &axes(Form::Number(Number::fixed(2, 3, 1000, 99_999)), "mm", "lead");
 const DIVISIONS: &[Field] = &axes(Form::Number(Number::digits(4, 1, 9999)), "pulse/rev", "pulses of a turn");
 const MULTIPLIERS: &[Field] = &axes(Form::Number(Number::digits(1, 1, 4)), "", "multiplier");
-const TASK_RANKS: &[Field] = &[
-    digits("task1", 1, 0, 4, "priority"),
-    digits("task2", 1, 0, 4, "priority"),
-    digits("task3", 1, 0, 4, "priority"),
-    digits("task4", 1, 0, 4, "priority"),
-];
-const TASK_POINTS: &[Field] = &[
-    digits("task1", 3, 999, 999, "rows"),
-    digits("task2", 3, 999, 999, "rows"),
-    digits("task3", 3, 999, 999, "rows"),
-    digits("task4", 3, 999, 999, "rows"),
-];
-const TASK_STEPS: &[Field] = &[
-    digits("task1", 4, 0, 5000, "steps"),
-    digits("task2", 4, 0, 5000, "steps"),
-    digits("task3", 4, 0, 5000, "steps"),
-    digits("task4", 4, 0, 5000, "steps"),
-];
+const TASK_RANKS: &[Field] = &per_task(digits("task1", 1, 0, 4, "priority"));
+const TASK_POINTS: &[Field] = &per_task(digits("task1", 3, 999, 999, "rows"));
+const TASK_STEPS: &[Field] = &per_task(digits("task1", 4, 0, 5000, "steps"));
+
+const fn per_task(task: Field) -> [Field; 4] {
+    [task, task.named("task2"), task.named("task3"), task.named("task4")]
+}
+
 /// Number of axes per task, as one digit for each task: 0 to 2 is the number of axes, 3 is three axes in a plane, 4 is
 /// three axes in space, 5 is four axes.
+#[rustfmt::skip] // One line per number would hide the list.
 const COMBINATIONS: &[Word] = &[
-    plain("1000"),
-    plain("1100"),
-    plain("1110"),
-    plain("1111"),
-    plain("1120"),
-    plain("1200"),
-    plain("1210"),
-    plain("1300"),
-    plain("1400"),
-    plain("2000"),
-    plain("2100"),
-    plain("2110"),
-    plain("2200"),
-    plain("3000"),
-    plain("3100"),
-    plain("4000"),
-    plain("4100"),
-    plain("5000"),
+    plain("1000"), plain("1100"), plain("1110"), plain("1111"), plain("1120"), plain("1200"),
+    plain("1210"), plain("1300"), plain("1400"), plain("2000"), plain("2100"), plain("2110"),
+    plain("2200"), plain("3000"), plain("3100"), plain("4000"), plain("4100"), plain("5000"),
 ];
 const SIGNS: &[Field] = &axes(Form::Word(&[word("0", "minus"), word("1", "plus")]), "", "direction");
 const BRAKES: &[Field] = &axes(Form::Word(&[word("0", "invalid"), word("1", "valid")]), "", "dynamic brake");

@@ -1,5 +1,6 @@
 //! Values and names of axes.
 
+use crate::refuse_if;
 use std::fmt;
 
 use super::reader::{PayloadError, Reader, push_words};
@@ -30,9 +31,7 @@ impl Axes {
 
     /// Parses all complete words, at most eight (torque 3.3.8, position error 3.3.7).
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
-        if data.len() < 4 {
-            return Err(PayloadError::Short { what: "axis values", needed: 4, found: data.len() });
-        }
+        refuse_if(data.len() < 4, PayloadError::Short { what: "axis values", needed: 4, found: data.len() })?;
         Ok(Self::take(data))
     }
 
@@ -82,9 +81,7 @@ pub struct AxisNames {
 impl AxisNames {
     /// Parses eight names. Missing names are empty.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
-        if data.len() < 4 {
-            return Err(PayloadError::Short { what: "axis names", needed: 4, found: data.len() });
-        }
+        refuse_if(data.len() < 4, PayloadError::Short { what: "axis names", needed: 4, found: data.len() })?;
         let mut names = Self::default();
         for (name, field) in names.names.iter_mut().zip(data.chunks_exact(4)) {
             *name = Text::cut(field);

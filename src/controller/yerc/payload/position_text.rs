@@ -9,6 +9,7 @@ use thiserror::Error;
 
 use super::axes::{Axes, MAX_AXES};
 use super::position::{BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
+use crate::refuse_if;
 use crate::units::{self, Unit, UnitError};
 use crate::user_input::unsigned;
 use crate::yerc::table::{Bit, EXTENDED_FORM_BITS, FORM_BITS};
@@ -45,11 +46,8 @@ pub enum PositionTextError {
         allowed: String,
     },
     /// A part of the text is not `key=value`.
-    #[error("'{found}' must be key=value")]
-    Pair {
-        /// The invalid text.
-        found: String,
-    },
+    #[error("'{0}' must be key=value")]
+    Pair(String),
     /// The kind does not have this key.
     #[error("'{found}' is not a part of this position; use {allowed}")]
     Key {
@@ -59,17 +57,11 @@ pub enum PositionTextError {
         allowed: String,
     },
     /// A key occurs twice.
-    #[error("'{key}' appears twice")]
-    Twice {
-        /// The key.
-        key: String,
-    },
+    #[error("'{0}' appears twice")]
+    Twice(String),
     /// The text has no value for this axis.
-    #[error("axis '{axis}' is missing")]
-    Missing {
-        /// Key of the axis.
-        axis: &'static str,
-    },
+    #[error("axis '{0}' is missing")]
+    Missing(&'static str),
     /// The value of an axis is invalid.
     #[error("{key}: {error}")]
     Axis {
@@ -236,8 +228,7 @@ impl<'a> Parts<'a> {
 
     fn read(&mut self, text: &'a str, unit: impl Fn(usize) -> Unit) -> Result<(), PositionTextError> {
         for pair in text.split(',').map(str::trim) {
-            let (key, value) =
-                pair.split_once('=').ok_or_else(|| PositionTextError::Pair { found: pair.to_owned() })?;
+            let (key, value) = pair.split_once('=').ok_or_else(|| PositionTextError::Pair(pair.to_owned()))?;
             let (key, value) = (key.trim().to_ascii_lowercase(), value.trim());
             let by_number = key.parse::<usize>().ok().filter(|number| (1..=MAX_AXES).contains(number));
             let axis = self.names.iter().position(|name| *name == key).or(by_number.map(|number| number - 1));
@@ -245,13 +236,9 @@ impl<'a> Parts<'a> {
                 let parsed = unit(axis)
                     .parse_steps(value)
                     .map_err(|error| PositionTextError::Axis { key: key.clone(), error })?;
-                if self.axes[axis].replace(parsed).is_some() {
-                    return Err(PositionTextError::Twice { key });
-                }
+                refuse_if(self.axes[axis].replace(parsed).is_some(), PositionTextError::Twice(key))?;
             } else if let Some(slot) = self.others.iter_mut().find(|slot| slot.0 == key) {
-                if slot.1.replace(value).is_some() {
-                    return Err(PositionTextError::Twice { key });
-                }
+                refuse_if(slot.1.replace(value).is_some(), PositionTextError::Twice(key))?;
             } else {
                 let keys = self.names.into_iter().chain(self.others.iter().map(|slot| slot.0));
                 let allowed = keys.collect::<Vec<_>>().join(", ");
@@ -270,7 +257,7 @@ impl<'a> Parts<'a> {
                 Some(value) => values[axis] = *value,
                 // The axes after the sixth are optional and independent of each other.
                 None if axis < required || axis < named.min(REQUIRED_AXES) => {
-                    return Err(PositionTextError::Missing { axis: self.names[axis] });
+                    return Err(PositionTextError::Missing(self.names[axis]));
                 }
                 None => {}
             }
@@ -313,7 +300,7 @@ fn flags(key: &'static str, text: Option<&str>, bits: &[Bit]) -> Result<u32, Pos
             (mask, if bit.set.eq_ignore_ascii_case(word) { mask } else { 0 })
         };
         if given & mask != 0 {
-            return Err(PositionTextError::Twice { key: word.to_owned() });
+            return Err(PositionTextError::Twice(word.to_owned()));
         }
         given |= mask;
         value |= set;
@@ -392,16 +379,16 @@ mod tests {
     #[test]
     fn rejects_ambiguous_positions() {
         let error = |text: &str| text.parse::<Position>().unwrap_err();
-        assert_eq!(error("base:x=1,y=2"), PositionTextError::Missing { axis: "z" });
+        assert_eq!(error("base:x=1,y=2"), PositionTextError::Missing("z"));
         assert_eq!(error("x=1"), PositionTextError::NoKind);
         assert!(matches!(error("best:x=1"), PositionTextError::Kind { .. }));
-        assert!(matches!(error("pulse:s=1,s=2"), PositionTextError::Twice { .. }));
-        assert!(matches!(error("pulse:s=1,1=2"), PositionTextError::Twice { .. }));
+        assert!(matches!(error("pulse:s=1,s=2"), PositionTextError::Twice(_)));
+        assert!(matches!(error("pulse:s=1,1=2"), PositionTextError::Twice(_)));
         assert!(matches!(error("pulse:s=1.5"), PositionTextError::Axis { .. }));
         assert!(matches!(error("pulse:x=1"), PositionTextError::Key { .. }));
-        assert!(matches!(error("pulse:s"), PositionTextError::Pair { .. }));
+        assert!(matches!(error("pulse:s"), PositionTextError::Pair(_)));
         let full = "base:x=1,y=1,z=1,rx=1,ry=1,rz=1";
-        assert!(matches!(error(&format!("{full},form=back+front")), PositionTextError::Twice { .. }));
+        assert!(matches!(error(&format!("{full},form=back+front")), PositionTextError::Twice(_)));
         assert!(matches!(error(&format!("{full},form=up")), PositionTextError::Value { key: "form", .. }));
         assert!(matches!(error(&format!("{full},tool=-1")), PositionTextError::Value { key: "tool", .. }));
     }

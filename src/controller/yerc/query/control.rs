@@ -1,6 +1,7 @@
 //! Control commands: reset, hold, servo, cycle, message, job, move (3.3.19 to 3.3.24, 3.3.39, 3.3.40).
 
 use super::{QueryError, WriteQuery, checked, in_range, known_task, write_one};
+use crate::refuse_if;
 use crate::yerc::Model;
 use crate::yerc::group::Group;
 use crate::yerc::payload::{CartesianMove, CycleMode, PulseMove, SpeedClass, Text};
@@ -122,9 +123,7 @@ pub struct SelectJob {
 impl SelectJob {
     /// Selects a job by its name of 1 to 32 bytes in the pendant encoding, without `.JBI`.
     pub fn new(model: Model, name: &[u8], selection: Selection) -> Result<Self, QueryError> {
-        if name.is_empty() {
-            return Err(QueryError::Empty { what: "the job name" });
-        }
+        refuse_if(name.is_empty(), QueryError::Empty { what: "the job name" })?;
         let name = Text::new(name).map_err(|error| QueryError::Text { what: "the job name", error })?;
         let (instance, line) = match selection {
             Selection::Execute { line } => (1, in_range("the line number", line, 0, LAST_LINE)?),
@@ -175,9 +174,7 @@ impl MoveCartesian {
     pub fn new(model: Model, kind: MoveKind, target: CartesianMove) -> Result<Self, QueryError> {
         check_group(model, target.robot, target.station)?;
         check_speed(kind, target.class, target.speed)?;
-        if !target.coordinate.is_cartesian() {
-            return Err(QueryError::Coordinate);
-        }
+        refuse_if(!target.coordinate.is_cartesian(), QueryError::Coordinate)?;
         check_bits("the form", target.form.0, MOVE_FORM)?;
         check_bits("the extended form", target.extended.0, MOVE_EXTENDED_FORM)?;
         in_range("the tool number", target.tool, 0, LAST_FRAME)?;

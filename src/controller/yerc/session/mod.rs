@@ -237,9 +237,9 @@ impl Inbox {
             Ok(answer) => answer,
             Err(error) => {
                 count(match error {
-                    WireError::Truncated { .. } => &mut counters.truncated,
+                    WireError::Truncated(_) => &mut counters.truncated,
                     WireError::DataSize { stated, present } if stated > present => &mut counters.truncated,
-                    WireError::Oversized { .. } | WireError::DataSize { .. } => &mut counters.oversized,
+                    WireError::Oversized(_) | WireError::DataSize { .. } => &mut counters.oversized,
                     _ => &mut counters.garbage,
                 });
                 return None;

@@ -3,8 +3,8 @@
 use super::alarms::Class;
 use super::memory::io_class;
 use super::world::{Mode, World};
+use crate::refuse_if;
 use crate::simulator::console::{self, expected, number, on_off, unknown};
-use crate::simulator::refuse_if;
 use crate::yerc::payload::CycleMode;
 
 /// Lines of `help`.

@@ -2,7 +2,7 @@
 
 use super::robot::{Answer, command};
 use super::world::{Mode, Refusal, World, code};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 use crate::yerc::payload::{CycleMode, Text};
 use crate::yerc::table::Row;
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::memory::Kind;
 use super::motion::{AXES, Pulses};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 
 /// Added status: NOP is missing at the start, END is missing at the end, or lines do not end in CR LF.
 const NOP_OR_END_MISSING: u16 = 0x5130;

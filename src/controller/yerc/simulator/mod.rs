@@ -104,7 +104,7 @@ impl Simulator {
     pub fn receive(&mut self, now: Now, division: Division, peer: u64, bytes: &[u8]) {
         let now = self.speed.simulated(now);
         self.advance(now);
-        if self.replay.is_silent() {
+        if self.replay.is_silent {
             return;
         }
         let now = self.world.now;
@@ -204,13 +204,13 @@ impl Simulator {
 /// The code for an invalid frame; `None` if the frame is too short to be answered.
 fn malformed(error: &WireError) -> Option<u16> {
     match error {
-        WireError::Truncated { .. } => None,
-        WireError::Oversized { .. } => Some(code::FRAME_TOO_LONG),
-        WireError::Identifier { .. } => Some(code::IDENTIFIER),
-        WireError::HeaderSize { .. } => Some(code::HEADER_SIZE),
+        WireError::Truncated(_) => None,
+        WireError::Oversized(_) => Some(code::FRAME_TOO_LONG),
+        WireError::Identifier(_) => Some(code::IDENTIFIER),
+        WireError::HeaderSize(_) => Some(code::HEADER_SIZE),
         WireError::DataSize { .. } => Some(code::SIZE_DIFFERS),
-        WireError::Division { .. } => Some(code::DIVISION),
-        WireError::Ack { .. } => Some(code::ACK),
+        WireError::Division(_) => Some(code::DIVISION),
+        WireError::Ack(_) => Some(code::ACK),
     }
 }
 

@@ -5,7 +5,7 @@
 
 use super::motion::{AXES, Family, MAX_ANGULAR_DEG_S, MAX_LINEAR_MM_S, Pose, Pulses, Speed, forward, inverse};
 use super::world::{Refusal, World, code};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 use crate::yerc::Model;
 use crate::yerc::payload::{CartesianMove, MoveLayout, PositionKind, PulseMove, SpeedClass};
 

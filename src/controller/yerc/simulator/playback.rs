@@ -8,9 +8,8 @@ use super::job::{Arithmetic, Condition, Instruction, Move, MoveTarget, Operand, 
 use super::memory::Kind;
 use super::motion::{AXES, Family, MAX_LINEAR_MM_S, Pose, Pulses, Speed, inverse};
 use super::world::World;
-use crate::Now;
-use crate::simulator::refuse_if;
 use crate::yerc::payload::{CycleMode, JobInfo, Text};
+use crate::{Now, refuse_if};
 
 /// Duration of a line without a motion or a wait.
 const LINE_TIME: Duration = Duration::from_millis(2);

@@ -4,7 +4,7 @@
 
 use super::memory::Kind;
 use super::world::{Refusal, World, code};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 use crate::yerc::Model;
 use crate::yerc::table::{Action, Attribute, Availability, Plural, Row, Service, service, total};
 use crate::yerc::wire::RequestFrame;

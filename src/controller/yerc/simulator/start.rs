@@ -22,6 +22,7 @@ use crate::simulator::recording::{Recording, Replayable};
 use crate::simulator::run_options::RunOptions;
 use crate::simulator::start::{self, Event, Source, Table, default_entry, default_text, numbered};
 use crate::simulator::timeline::Timeline;
+use crate::simulator::with_defaults;
 use crate::yerc::Model;
 use crate::yerc::payload::{Axes, BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
 
@@ -166,119 +167,72 @@ impl Replayable for Start {
     }
 }
 
-#[derive(Debug, Deserialize)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an independent key")]
-#[serde(default, deny_unknown_fields)]
-struct Entries {
-    #[serde(deserialize_with = "model")]
-    model: Model,
-    seed: u64,
-    mode: Mode,
-    remote: bool,
-    servo: bool,
-    cycle: Spanned<String>,
-    /// Whether variables can be written in play mode (S2C541 = 0).
-    play_write: bool,
-    /// Date and time at the start.
-    clock: Spanned<String>,
-    /// Start of the operating-time counters.
-    installed: Spanned<String>,
-    software: Option<String>,
-    robot_model: Option<String>,
-    application: Option<String>,
-    parameter_version: Option<String>,
-    /// Control groups. `R1` must be the first.
-    groups: Vec<Spanned<String>>,
-    /// Number of axes of a robot: 6 or 7.
-    robot_axes: Spanned<usize>,
-    trim_axes: Option<bool>,
-    hours: Hours,
-    answer_delay_ms: u64,
-    busy: Spanned<f64>,
-    backup_seconds: u64,
-    backup_size: u64,
-    transfer_timeout_ms: u64,
-    capacity: u64,
-    replace_jobs: bool,
-    plain_last_ack: bool,
-    /// Name of the job to execute.
-    job: Option<Spanned<String>>,
-    ladder_registers: Vec<Spanned<u16>>,
-    variables: Table<Value>,
-    registers: Table<u16>,
-    io: Table<bool>,
-    /// Positions in pulses, by group.
-    positions: Table<Vec<i32>>,
-    /// User frames by number: X, Y, Z in mm, and a rotation about Z in degrees.
-    user_frames: Table<[f64; 4]>,
-    #[serde(rename = "alarm")]
-    alarms: Vec<AlarmEntry>,
-    history: Option<Vec<AlarmEntry>>,
-    #[serde(rename = "file")]
-    files: Vec<Spanned<FileEntry>>,
-    /// Whether to add the files, variables and alarms of a new controller.
-    stock: bool,
-    #[serde(rename = "event")]
-    events: Vec<Spanned<Event>>,
-}
-
-impl Default for Entries {
-    fn default() -> Self {
-        Self {
-            model: Model::Dx200,
-            seed: 0,
-            mode: Mode::Play,
-            remote: true,
-            servo: true,
-            cycle: default_text("once"),
-            play_write: true,
-            clock: default_text("2026/03/14 08:00"),
-            installed: default_text("2025/10/10 15:49"),
-            software: None,
-            robot_model: None,
-            application: None,
-            parameter_version: None,
-            groups: ["R1", "B1", "S1"].map(default_text).to_vec(),
-            robot_axes: default_entry(6),
-            trim_axes: None,
-            hours: Hours::default(),
-            answer_delay_ms: 0,
-            busy: default_entry(0.0),
-            backup_seconds: 3,
-            backup_size: 100_000,
-            transfer_timeout_ms: 5_000,
-            capacity: 256 << 20,
-            replace_jobs: false,
-            plain_last_ack: false,
-            job: None,
-            ladder_registers: (540..550).map(default_entry).collect(),
-            variables: Table::new(),
-            registers: Table::new(),
-            io: Table::new(),
-            positions: Table::new(),
-            user_frames: Table::from([("1".to_owned(), default_entry([500.0, 0.0, 0.0, 0.0]))]),
-            alarms: Vec::new(),
-            history: None,
-            files: Vec::new(),
-            stock: true,
-            events: Vec::new(),
-        }
+with_defaults! {
+    #[derive(Debug, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    struct Entries {
+        #[serde(deserialize_with = "model")]
+        model: Model = Model::Dx200,
+        seed: u64,
+        mode: Mode = Mode::Play,
+        remote: bool = true,
+        servo: bool = true,
+        cycle: Spanned<String> = default_text("once"),
+        /// Whether variables can be written in play mode (S2C541 = 0).
+        play_write: bool = true,
+        /// Date and time at the start.
+        clock: Spanned<String> = default_text("2026/03/14 08:00"),
+        /// Start of the operating-time counters.
+        installed: Spanned<String> = default_text("2025/10/10 15:49"),
+        software: Option<String>,
+        robot_model: Option<String>,
+        application: Option<String>,
+        parameter_version: Option<String>,
+        /// Control groups. `R1` must be the first.
+        groups: Vec<Spanned<String>> = ["R1", "B1", "S1"].map(default_text).to_vec(),
+        /// Number of axes of a robot: 6 or 7.
+        robot_axes: Spanned<usize> = default_entry(6),
+        trim_axes: Option<bool>,
+        hours: Hours,
+        answer_delay_ms: u64,
+        busy: Spanned<f64> = default_entry(0.0),
+        backup_seconds: u64 = 3,
+        backup_size: u64 = 100_000,
+        transfer_timeout_ms: u64 = 5_000,
+        capacity: u64 = 256 << 20,
+        replace_jobs: bool,
+        plain_last_ack: bool,
+        /// Name of the job to execute.
+        job: Option<Spanned<String>>,
+        ladder_registers: Vec<Spanned<u16>> = (540..550).map(default_entry).collect(),
+        variables: Table<Value>,
+        registers: Table<u16>,
+        io: Table<bool>,
+        /// Positions in pulses, by group.
+        positions: Table<Vec<i32>>,
+        /// User frames by number: X, Y, Z in mm, and a rotation about Z in degrees.
+        user_frames: Table<[f64; 4]> = Table::from([("1".to_owned(), default_entry([500.0, 0.0, 0.0, 0.0]))]),
+        #[serde(rename = "alarm")]
+        alarms: Vec<AlarmEntry>,
+        history: Option<Vec<AlarmEntry>>,
+        #[serde(rename = "file")]
+        files: Vec<Spanned<FileEntry>>,
+        /// Whether to add the files, variables and alarms of a new controller.
+        stock: bool = true,
+        #[serde(rename = "event")]
+        events: Vec<Spanned<Event>>,
     }
 }
 
-/// Operating times before the start.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct Hours {
-    control: u32,
-    servo: u32,
-    playback: u32,
-    motion: u32,
-}
-
-impl Default for Hours {
-    fn default() -> Self {
-        Self { control: 2345, servo: 1890, playback: 1234, motion: 987 }
+with_defaults! {
+    /// Operating times before the start.
+    #[derive(Debug, Clone, Copy, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    struct Hours {
+        control: u32 = 2345,
+        servo: u32 = 1890,
+        playback: u32 = 1234,
+        motion: u32 = 987,
     }
 }
 

@@ -7,7 +7,7 @@ use super::job::Program;
 use super::name_lists;
 use super::variable_file;
 use super::world::{Refusal, World, code};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 use crate::yerc::Model;
 use crate::yerc::table::BATCH_BACKUP_PATH;
 
@@ -24,11 +24,8 @@ const PATH_LEN: usize = 64;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Content {
     Bytes(Arc<[u8]>),
-    /// Bytes that are generated from a seed.
-    Generated {
-        seed: u64,
-        size: u64,
-    },
+    // Bytes that are generated from a seed.
+    Generated { seed: u64, size: u64 },
 }
 
 impl Content {
@@ -239,26 +236,16 @@ impl World {
 
 /// Checks a name. It must have a known extension, and no folder or NUL. A controller treats a name with a NUL as empty.
 pub(super) fn check_name(name: &[u8]) -> Result<(), Refusal> {
-    let refuse = |code| Err(Refusal::Added(code));
-    if name.is_empty() || name.contains(&0) {
-        return refuse(code::DATA_SIZE_ZERO);
-    }
-    if name.len() > PATH_LEN {
-        return refuse(code::PATH_LENGTH);
-    }
-    let Some(extension) = EXTENSIONS.into_iter().find(|extension| name.ends_with(extension)) else {
-        return refuse(code::PATH);
-    };
+    let refuse = |is_refused, code| refuse_if(is_refused, Refusal::Added(code));
+    refuse(name.is_empty() || name.contains(&0), code::DATA_SIZE_ZERO)?;
+    refuse(name.len() > PATH_LEN, code::PATH_LENGTH)?;
+    let extension = EXTENSIONS.into_iter().find(|extension| name.ends_with(extension));
+    let extension = extension.ok_or(Refusal::Added(code::PATH))?;
     let stem = &name[..name.len() - extension.len()];
     // 0x5C may be the second byte of a Shift_JIS character, so a backslash does not count as a separator.
-    if stem.is_empty() || stem.contains(&b'/') || stem.contains(&b':') {
-        return refuse(code::PATH);
-    }
+    refuse(stem.is_empty() || stem.contains(&b'/') || stem.contains(&b':'), code::PATH)?;
     let invalid = |byte: &u8| *byte < b' ' || *byte == 0x7F || b"\"*?<>|,".contains(byte);
-    if stem.len() > NAME_LEN || stem.iter().any(invalid) {
-        return refuse(code::JOB_NAME);
-    }
-    Ok(())
+    refuse(stem.len() > NAME_LEN || stem.iter().any(invalid), code::JOB_NAME)
 }
 
 /// Checks the name of a stored file. Any extension is allowed, because a controller also has files that cannot be

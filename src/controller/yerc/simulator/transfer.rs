@@ -16,11 +16,10 @@ use std::time::Duration;
 use super::robot::has;
 use super::storage::{Content, FileContent};
 use super::world::{Refusal, World, code};
-use crate::Now;
-use crate::simulator::refuse_if;
 use crate::yerc::Model;
 use crate::yerc::table::{BATCH_BACKUP_PATH, Row, service};
 use crate::yerc::wire::{AnswerFrame, Division, LAST_BLOCK, MAX_DATA, RequestFrame, Status};
+use crate::{Now, refuse_if};
 
 /// A repeat within this time after the last frame is a network echo.
 const ECHO: Duration = Duration::from_millis(20);

@@ -9,12 +9,11 @@ use super::memory::Memory;
 use super::motion::{Arm, End, Family, Group};
 use super::playback::Player;
 use super::storage::Storage;
-use crate::Now;
-use crate::simulator::refuse_if;
 use crate::simulator::timeline::Timeline;
 use crate::yerc::Model;
 use crate::yerc::payload::{ControllerStatus, CycleMode, StatusBit};
 use crate::yerc::wire::Status;
+use crate::{Now, refuse_if};
 
 /// Added status codes (DX chapter 4) that several modules use.
 pub(super) mod code {

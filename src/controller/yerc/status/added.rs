@@ -71,14 +71,16 @@ pub(super) const BOTH: &[Model] = &[Model::Fs100, Model::Dx200];
 pub(super) const DX200: &[Model] = &[Model::Dx200];
 pub(super) const NONE: &[Model] = &[];
 
+type Text = &'static str;
+
 /// Creates a row; the arguments are in column order.
 pub(super) const fn row(
     code: u16,
     class: Class,
     models: &'static [Model],
-    name: &'static str,
-    cause: &'static str,
-    remedy: &'static str,
+    name: Text,
+    cause: Text,
+    remedy: Text,
 ) -> AddedRow {
     AddedRow { code, class, models, name, cause, remedy }
 }

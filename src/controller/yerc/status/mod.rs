@@ -32,47 +32,30 @@ pub struct StatusRow {
     pub remedy: &'static str,
 }
 
-/// Rows in ascending order of the code.
+/// Rows in ascending order of the code. Columns: code, models, name, cause, remedy.
+#[rustfmt::skip] // Seven lines per row would hide the table.
 static STATUSES: [StatusRow; 5] = [
-    StatusRow {
-        code: 0x00,
-        models: added::BOTH,
-        name: "done",
-        cause: "The controller carried out the request.",
-        remedy: "Nothing to do.",
-    },
-    StatusRow {
-        code: 0x08,
-        models: added::DX200,
-        name: "command not defined",
-        cause: "The controller does not support this command number.",
-        remedy: "Check the model (fs100 or dx200) and the software version (`armctl yerc info`): some commands need \
-                 newer software, and some exist on only one model.",
-    },
-    StatusRow {
-        code: 0x09,
-        models: added::DX200,
-        name: "element (attribute) number is invalid",
-        cause: "The command has no such field.",
-        remedy: "With `armctl yerc raw`, compare --attribute with the command's list or try 0; otherwise check the model.",
-    },
-    StatusRow {
-        code: 0x1F,
-        models: added::DX200,
-        name: "refused, see the added status",
-        cause: "The controller refused; the added status gives the reason.",
-        remedy: "Look up the added status: `armctl explain yerc CODE`. Without an added status, read the display of \
-                 the pendant and `armctl yerc alarm list`.",
-    },
-    StatusRow {
-        code: 0x28,
-        models: added::DX200,
-        name: "array (instance) number does not exist",
-        cause: "The address does not exist: a number above the last variable, signal, group or task, or number plus \
-                count above the end (not certain).",
-        remedy: "Check the number against this controller's ranges and the set model.",
-    },
+    row(0x00, added::BOTH, "done", "The controller carried out the request.", "Nothing to do."),
+    row(0x08, added::DX200, "command not defined", "The controller does not support this command number.",
+        "Check the model (fs100 or dx200) and the software version (`armctl yerc info`): some commands need newer \
+         software, and some exist on only one model."),
+    row(0x09, added::DX200, "element (attribute) number is invalid", "The command has no such field.",
+        "With `armctl yerc raw`, compare --attribute with the command's list or try 0; otherwise check the model."),
+    row(0x1F, added::DX200, "refused, see the added status",
+        "The controller refused; the added status gives the reason.",
+        "Look up the added status: `armctl explain yerc CODE`. Without an added status, read the display of the \
+         pendant and `armctl yerc alarm list`."),
+    row(0x28, added::DX200, "array (instance) number does not exist",
+        "The address does not exist: a number above the last variable, signal, group or task, or number plus count \
+         above the end (not certain).",
+        "Check the number against this controller's ranges and the set model."),
 ];
+
+type Text = &'static str;
+
+const fn row(code: u8, models: &'static [Model], name: Text, cause: Text, remedy: Text) -> StatusRow {
+    StatusRow { code, models, name, cause, remedy }
+}
 
 /// The row of a status code; `None` if the code is unknown.
 pub fn status(code: u8) -> Option<&'static StatusRow> {

@@ -77,10 +77,12 @@ const fn write_plural(risk: RiskRule) -> Service {
     Service { number, meaning, action: Action::Write, attribute: Attribute::Zero, risk }
 }
 
+type Text = &'static str;
+
 const fn row(
     number: u16,
-    section: &'static str,
-    name: &'static str,
+    section: Text,
+    name: Text,
     services: &'static [Service],
     instances: Instances,
     fields: &'static [Field],
@@ -101,8 +103,8 @@ const fn row(
 
 const fn plural(
     number: u16,
-    section: &'static str,
-    name: &'static str,
+    section: Text,
+    name: Text,
     instances: Instances,
     fields: &'static [Field],
     max: u16,
@@ -130,12 +132,7 @@ const fn dx200(row: Row) -> Row {
     Row { availability: Availability::Dx200, ..row }
 }
 
-const fn files(
-    section: &'static str,
-    name: &'static str,
-    services: &'static [Service],
-    fields: &'static [Field],
-) -> Row {
+const fn files(section: Text, name: Text, services: &'static [Service], fields: &'static [Field]) -> Row {
     Row { division: Division::File, ..row(0, section, name, services, at::FILES, fields) }
 }
 

@@ -134,40 +134,30 @@ pub(super) const TASKS: Instances = each(
     &[ro(1, 1, "master task"), no(2, 6, "", "sub task ", 1)],
     &[ro(1, 1, "master task"), no(2, 16, "", "sub task ", 1)],
 );
-pub(super) const AXES: Instances = each(
-    &[
-        no(1, 2, "robot (pulse)", "R", 1),
-        no(11, 12, "base (pulse)", "B", 1),
-        no(21, 23, "station (pulse)", "S", 1),
-        no(101, 102, "robot (cartesian)", "R", 1),
-        no(111, 112, "base (cartesian)", "B", 1),
-    ],
-    &[
-        no(1, 8, "robot (pulse)", "R", 1),
-        no(11, 18, "base (pulse)", "B", 1),
-        no(21, 44, "station (pulse)", "S", 1),
-        no(101, 108, "robot (cartesian)", "R", 1),
-        no(111, 118, "base (cartesian)", "B", 1),
-    ],
-);
-pub(super) const POSITIONS: Instances = each(
-    &[
-        no(1, 2, "robot (pulse)", "R", 1),
-        no(11, 12, "base (pulse)", "B", 1),
-        no(21, 23, "station (pulse)", "S", 1),
-        no(101, 102, "robot (base coordinates)", "R", 1),
-    ],
-    &[
-        no(1, 8, "robot (pulse)", "R", 1),
-        no(11, 18, "base (pulse)", "B", 1),
-        no(21, 44, "station (pulse)", "S", 1),
-        no(101, 108, "robot (base coordinates)", "R", 1),
-    ],
-);
-pub(super) const GROUPS: Instances = each(
-    &[no(1, 2, "robot", "R", 1), no(11, 12, "base", "B", 1), no(21, 23, "station", "S", 1)],
-    &[no(1, 8, "robot", "R", 1), no(11, 18, "base", "B", 1), no(21, 44, "station", "S", 1)],
-);
+pub(super) const AXES: Instances = each(&axes(2, 3), &axes(8, 24));
+pub(super) const POSITIONS: Instances = each(&positions(2, 3), &positions(8, 24));
+pub(super) const GROUPS: Instances = each(&groups(2, 3), &groups(8, 24));
+
+/// A model has as many bases as robots.
+const fn axes(robots: u16, stations: u16) -> [Span; 5] {
+    [
+        no(1, robots, "robot (pulse)", "R", 1),
+        no(11, 10 + robots, "base (pulse)", "B", 1),
+        no(21, 20 + stations, "station (pulse)", "S", 1),
+        no(101, 100 + robots, "robot (cartesian)", "R", 1),
+        no(111, 110 + robots, "base (cartesian)", "B", 1),
+    ]
+}
+
+const fn positions(robots: u16, stations: u16) -> [Span; 4] {
+    let [robot, base, station, ..] = axes(robots, stations);
+    [robot, base, station, no(101, 100 + robots, "robot (base coordinates)", "R", 1)]
+}
+
+const fn groups(robots: u16, stations: u16) -> [Span; 3] {
+    [no(1, robots, "robot", "R", 1), no(11, 10 + robots, "base", "B", 1), no(21, 20 + stations, "station", "S", 1)]
+}
+
 /// Number of signal groups in each class in which models differ. For network signals, also the number of the first
 /// group.
 struct Signals {
@@ -228,34 +218,24 @@ pub(super) const SELECTIONS: Instances = each(
     &[rw(1, 1, "job to execute"), Span { writable: true, ..no(10, 15, "", "master job of task ", 0) }],
     &[rw(1, 1, "job to execute"), Span { writable: true, ..no(10, 25, "", "master job of task ", 0) }],
 );
-pub(super) const TIMES: Instances = each(
-    &[
+pub(super) const TIMES: Instances = each(&times(2, 3), &times(8, 24));
+
+const fn times(robots: u16, stations: u16) -> [Span; 11] {
+    [
         ro(1, 1, "control power on time"),
         ro(10, 10, "servo power on time, total"),
-        no(11, 12, "servo power on time", "R", 1),
-        no(21, 23, "servo power on time", "S", 1),
+        no(11, 10 + robots, "servo power on time", "R", 1),
+        no(21, 20 + stations, "servo power on time", "S", 1),
         ro(110, 110, "playback time, total"),
-        no(111, 112, "playback time", "R", 1),
-        no(121, 123, "playback time", "S", 1),
+        no(111, 110 + robots, "playback time", "R", 1),
+        no(121, 120 + stations, "playback time", "S", 1),
         ro(210, 210, "motion time, total"),
-        no(211, 212, "motion time", "R", 1),
-        no(221, 223, "motion time", "S", 1),
+        no(211, 210 + robots, "motion time", "R", 1),
+        no(221, 220 + stations, "motion time", "S", 1),
         no(301, 308, "operation time", "application ", 1),
-    ],
-    &[
-        ro(1, 1, "control power on time"),
-        ro(10, 10, "servo power on time, total"),
-        no(11, 18, "servo power on time", "R", 1),
-        no(21, 44, "servo power on time", "S", 1),
-        ro(110, 110, "playback time, total"),
-        no(111, 118, "playback time", "R", 1),
-        no(121, 144, "playback time", "S", 1),
-        ro(210, 210, "motion time, total"),
-        no(211, 218, "motion time", "R", 1),
-        no(221, 244, "motion time", "S", 1),
-        no(301, 308, "operation time", "application ", 1),
-    ],
-);
+    ]
+}
+
 pub(super) const SYSTEMS: Instances = each(
     &[no(11, 12, "", "R", 1), no(21, 23, "", "S", 1), no(101, 101, "", "application ", 1)],
     &[no(11, 18, "", "R", 1), no(21, 44, "", "S", 1), no(101, 108, "", "application ", 1)],

@@ -117,23 +117,14 @@ pub struct Reference {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ReferenceError {
     /// Unknown letters.
-    #[error("'{found}' is not a variable; use B, I, D, R, S, P, BP or EX with a number, for example B0 or B0..B99")]
-    Kind {
-        /// The invalid text.
-        found: String,
-    },
+    #[error("'{0}' is not a variable; use B, I, D, R, S, P, BP or EX with a number, for example B0 or B0..B99")]
+    Kind(String),
     /// The number is missing, or is above 65535.
-    #[error("'{found}' needs a number from 0 to 65535")]
-    Number {
-        /// The invalid text.
-        found: String,
-    },
+    #[error("'{0}' needs a number from 0 to 65535")]
+    Number(String),
     /// The ends of a range have different kinds.
-    #[error("'{found}' is not a valid range; both ends must have the same type, and the lower end must be first")]
-    Range {
-        /// The invalid text.
-        found: String,
-    },
+    #[error("'{0}' is not a valid range; both ends must have the same type, and the lower end must be first")]
+    Range(String),
     /// The ends of a range are in the wrong order.
     #[error(transparent)]
     Backwards(#[from] RangeError),
@@ -164,7 +155,7 @@ impl FromStr for Reference {
             .rev()
             .find(|row| row.1.eq_ignore_ascii_case(letters))
             .map(|row| row.0)
-            .ok_or_else(|| ReferenceError::Kind { found: text.to_owned() })?;
+            .ok_or_else(|| ReferenceError::Kind(text.to_owned()))?;
         Ok(Self { kind, number: parse_number(number, text)? })
     }
 }
@@ -175,7 +166,7 @@ pub fn parse_references(text: &str) -> Result<Vec<Reference>, ReferenceError> {
     let numbers = user_input::range(text, |end| {
         let end: Reference = end.parse()?;
         let same_kind = Some(end.number).filter(|_| end.kind == first.kind);
-        same_kind.ok_or_else(|| ReferenceError::Range { found: text.to_owned() })
+        same_kind.ok_or_else(|| ReferenceError::Range(text.to_owned()))
     })?;
     Ok(numbers.map(|number| Reference::new(first.kind, number)).collect())
 }
@@ -186,7 +177,7 @@ pub fn parse_numbers(text: &str) -> Result<Vec<u16>, ReferenceError> {
 }
 
 fn parse_number(digits: &str, whole: &str) -> Result<u16, ReferenceError> {
-    unsigned(digits).ok_or_else(|| ReferenceError::Number { found: whole.to_owned() })
+    unsigned(digits).ok_or_else(|| ReferenceError::Number(whole.to_owned()))
 }
 
 #[cfg(test)]

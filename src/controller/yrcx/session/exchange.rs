@@ -99,10 +99,9 @@ impl fmt::Display for Silence {
             Self::TooLong => f.write_str("the command still ran at the end of the wait"),
             Self::Vanished => f.write_str("the controller ended the run status without a result"),
             Self::Undocumented(word) => write!(f, "the controller reports the undocumented status {word:#06x}"),
-            Self::Interrupted => f.write_str(
-                "the controller did not confirm the end of the command within the time \
-                                              for a stop",
-            ),
+            Self::Interrupted => {
+                f.write_str("the controller did not confirm the end of the command within the time for a stop")
+            }
         }
     }
 }

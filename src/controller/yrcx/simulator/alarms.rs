@@ -126,7 +126,7 @@ pub(super) struct AlarmLog {
     active: Vec<(Alarm, bool)>,
     history: VecDeque<Entry>,
     /// Latest alarm that a remote command caused (4.7.17).
-    latest_remote: Option<Entry>,
+    pub(super) latest_remote: Option<Entry>,
 }
 
 impl AlarmLog {
@@ -180,10 +180,6 @@ impl AlarmLog {
     /// Entry of the history by its number; 1 is the newest entry.
     pub(super) fn entry(&self, number: usize) -> Option<Entry> {
         self.history.get(number.checked_sub(1)?).copied()
-    }
-
-    pub(super) fn latest_remote(&self) -> Option<Entry> {
-        self.latest_remote
     }
 
     /// Appends an entry that is older than all others.

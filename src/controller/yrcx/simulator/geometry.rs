@@ -10,20 +10,17 @@ pub(super) const STEPS: f64 = 1000.0;
 /// Kinematics of a robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {
-    /// Axes 1 to 4 are X, Y, Z, R.
+    // Axes 1 to 4 are X, Y, Z, R.
     Cartesian,
-    /// Two arms with vertical axes, a height axis, and a rotation axis.
-    Scara {
-        /// Length of the first arm in mm.
-        first: f64,
-        /// Length of the second arm in mm.
-        second: f64,
-    },
+    // Two arms with vertical axes and these lengths in mm, a height axis, and a rotation axis.
+    Scara { first: f64, second: f64 },
 }
 
 /// Arm side of a SCARA.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub(super) enum Arm {
+    #[default]
     Right,
     Left,
 }

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use super::alarms::{ARITHMETIC, AlarmSource, Fault, NO_AXIS, NO_PALLET, NO_POINT, POINT_UNIT};
 use super::geometry::{FourValues, STEPS, whole};
 use super::robot::AXES;
-use crate::simulator::refuse_if;
+use crate::refuse_if;
+use crate::simulator::with_defaults;
 
 pub(super) const POINTS: u16 = 30_000;
 /// Number of pallets, and of shifts.
@@ -107,30 +108,17 @@ pub(super) struct PortRef {
     pub(super) bit: Option<u8>,
 }
 
-#[derive(Debug, Clone)]
-pub(super) struct Memory {
-    points: BTreeMap<u16, Point>,
-    pub(super) comments: BTreeMap<u16, String>,
-    pub(super) pallets: [Option<Pallet>; SHIFTS],
-    pub(super) shifts: [[i32; AXES]; SHIFTS],
-    pub(super) hands: [Option<Hand>; HANDS],
-    whole: [i32; VARIABLES],
-    real: [f32; VARIABLES],
-    ports: [[u8; PORTS]; PORT_TYPES],
-}
-
-impl Default for Memory {
-    fn default() -> Self {
-        Self {
-            points: BTreeMap::new(),
-            comments: BTreeMap::new(),
-            pallets: [None; SHIFTS],
-            shifts: [[0; AXES]; SHIFTS],
-            hands: [None; HANDS],
-            whole: [0; VARIABLES],
-            real: [0.0; VARIABLES],
-            ports: [[0; PORTS]; PORT_TYPES],
-        }
+with_defaults! {
+    #[derive(Debug, Clone)]
+    pub(super) struct Memory {
+        points: BTreeMap<u16, Point>,
+        pub(super) comments: BTreeMap<u16, String>,
+        pub(super) pallets: [Option<Pallet>; SHIFTS] = [None; SHIFTS],
+        pub(super) shifts: [[i32; AXES]; SHIFTS] = [[0; AXES]; SHIFTS],
+        pub(super) hands: [Option<Hand>; HANDS] = [None; HANDS],
+        whole: [i32; VARIABLES] = [0; VARIABLES],
+        real: [f32; VARIABLES] = [0.0; VARIABLES],
+        ports: [[u8; PORTS]; PORT_TYPES] = [[0; PORTS]; PORT_TYPES],
     }
 }
 

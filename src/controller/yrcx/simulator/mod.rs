@@ -172,7 +172,7 @@ impl Simulator {
 
     /// Whether the recorded controller did not answer at this time. The fieldbus device must then be silent too.
     pub fn is_silent(&self) -> bool {
-        self.replay.is_silent()
+        self.replay.is_silent
     }
 
     /// Time of the next scan that may change something, without an input from outside.

@@ -9,7 +9,7 @@ use super::moves::{Frame, Homing, Rate, Speed};
 use super::request::Request;
 use super::robot::{ALL, Method, RESET_PITCH, ResumableMotion};
 use super::world::World;
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Values};
 

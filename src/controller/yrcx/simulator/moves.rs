@@ -6,7 +6,7 @@ use super::memory::{Point, PointUnit};
 use super::motion::{End, Leg, Motion, Owner, Path};
 use super::robot::{Axis, Method, Motor, Robot, over_limit};
 use super::world::{Mode, World};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 
 /// Full tool speed in mm/s. The constant below is the full rotation speed in degrees/s.
 const LINEAR_SPEED: f64 = 1000.0;

@@ -13,7 +13,7 @@ use super::request::Request;
 use super::robot::{Method, RESET_PITCH, Servo};
 use super::task::{State, TASKS, Task};
 use super::world::{Action, World};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Values};
 

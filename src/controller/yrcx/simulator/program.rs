@@ -18,23 +18,14 @@ pub(super) enum Operand {
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Statement {
-    /// Empty line, comment or label.
+    // Empty line, comment or label.
     Nothing,
-    Move {
-        /// Index of the robot, from 0.
-        robot: usize,
-        linear: bool,
-        relative: bool,
-        point: usize,
-    },
+    // The index of the robot begins at 0.
+    Move { robot: usize, linear: bool, relative: bool, point: usize },
     Delay(Duration),
     Output(PortRef, u8),
     Wait(PortRef, u8),
-    Assign {
-        variable: usize,
-        first: Operand,
-        then: Option<(Operation, Operand)>,
-    },
+    Assign { variable: usize, first: Operand, then: Option<(Operation, Operand)> },
     Goto(String),
     Gosub(String),
     Return,

@@ -50,7 +50,7 @@ pub(super) fn answer(world: &World, request: &Request) -> Result<Values, Fault> 
         Command::TaskStatus => per_task(world, request, NONE, super::task::Task::status),
         Command::TaskLines => per_task(world, request, 0, |task| world.line_of(task)),
         Command::AlarmHistory => alarm(world.alarms.entry(request.index(Key::History))),
-        Command::LatestAlarm => alarm(world.alarms.latest_remote()),
+        Command::LatestAlarm => alarm(world.alarms.latest_remote),
         Command::SpeedStatus => [
             (Key::AutoSpeed, of_robot(|robot| robot.auto_speed)),
             (Key::ManualSpeed, of_robot(|robot| robot.manual_speed)),

@@ -2,7 +2,7 @@
 //! controllers are known to do.
 
 use super::alarms::{AlarmSource, Fault, UNKNOWN_COMMAND};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 use crate::yrcx::answer::Status;
 use crate::yrcx::image::{COMMAND_WORDS, Words};
 use crate::yrcx::table::parameter::Parameter;

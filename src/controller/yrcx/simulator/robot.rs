@@ -41,10 +41,12 @@ pub(super) enum Method {
 }
 
 /// Servo state of an axis (4.7.3).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub(super) enum Servo {
-    Brake,
+    #[serde(rename = "servo")]
     On,
+    Brake,
     Free,
 }
 

@@ -12,20 +12,19 @@ use jiff::civil::DateTime;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::alarms::{AlarmLog, LINK};
 use super::defaults::{self, STOCK};
-use super::memory::Memory;
+use super::geometry::Arm;
 use super::request::Request;
-use super::robot::{Method, Motor};
-use super::world::{Link, Mode, Switches, World};
+use super::robot::{Method, Motor, Servo};
+use super::task::State;
+use super::world::{Mode, Switches, World};
 use super::{commands, console};
 use crate::Now;
 use crate::simulator::recording::{Recording, Replayable};
 use crate::simulator::run_options::RunOptions;
 use crate::simulator::start::{self, Event, Source, Table, numbered};
-use crate::simulator::timeline::Timeline;
+use crate::simulator::with_defaults;
 use crate::yrcx::image::Words;
-use crate::yrcx::signal::resting;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Value};
 
@@ -170,74 +169,41 @@ impl Replayable for Start {
     }
 }
 
-#[derive(Debug, Deserialize)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an independent key")]
-#[serde(default, deny_unknown_fields)]
-struct Entries {
-    mode: Mode,
-    servo: bool,
-    r#box: bool,
-    inputs: bool,
-    sequence: bool,
-    di17: Di17,
-    movei_start: MoveiStart,
-    clock: Option<Spanned<String>>,
-    link_within_ms: Option<u64>,
-    run_scans: u32,
-    seed: u64,
-    versions: Versions,
-    slots: Table<[String; 4]>,
-    variables: Table<Number>,
-    ports: Table<u8>,
-    stock: bool,
-    #[serde(rename = "robot")]
-    robots: Vec<Spanned<RobotEntry>>,
-    points: Table<PointEntry>,
-    comments: Table<String>,
-    pallets: Table<PalletEntry>,
-    shifts: Table<[f64; 4]>,
-    hands: Table<HandEntry>,
-    #[serde(rename = "program")]
-    programs: Vec<Spanned<ProgramEntry>>,
-    #[serde(rename = "task")]
-    tasks: Vec<Spanned<TaskEntry>>,
-    history: Vec<Spanned<AlarmEntry>>,
-    latest_remote: Option<Spanned<AlarmEntry>>,
-    #[serde(rename = "event")]
-    events: Vec<Spanned<Event>>,
-}
-
-impl Default for Entries {
-    fn default() -> Self {
-        Self {
-            mode: Mode::Auto,
-            servo: true,
-            r#box: false,
-            inputs: true,
-            sequence: false,
-            di17: Di17::Abs,
-            movei_start: MoveiStart::Keep,
-            clock: None,
-            link_within_ms: None,
-            run_scans: 0,
-            seed: 0,
-            versions: Versions::default(),
-            slots: Table::new(),
-            variables: Table::new(),
-            ports: Table::new(),
-            stock: true,
-            robots: Vec::new(),
-            points: Table::new(),
-            comments: Table::new(),
-            pallets: Table::new(),
-            shifts: Table::new(),
-            hands: Table::new(),
-            programs: Vec::new(),
-            tasks: Vec::new(),
-            history: Vec::new(),
-            latest_remote: None,
-            events: Vec::new(),
-        }
+with_defaults! {
+    #[derive(Debug, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    struct Entries {
+        mode: Mode,
+        servo: bool = true,
+        r#box: bool,
+        inputs: bool = true,
+        sequence: bool,
+        di17: Di17 = Di17::Abs,
+        movei_start: MoveiStart = MoveiStart::Keep,
+        clock: Option<Spanned<String>>,
+        link_within_ms: Option<u64>,
+        run_scans: u32,
+        seed: u64,
+        versions: Versions,
+        slots: Table<[String; 4]>,
+        variables: Table<Number>,
+        ports: Table<u8>,
+        stock: bool = true,
+        #[serde(rename = "robot")]
+        robots: Vec<Spanned<RobotEntry>>,
+        points: Table<PointEntry>,
+        comments: Table<String>,
+        pallets: Table<PalletEntry>,
+        shifts: Table<[f64; 4]>,
+        hands: Table<HandEntry>,
+        #[serde(rename = "program")]
+        programs: Vec<Spanned<ProgramEntry>>,
+        #[serde(rename = "task")]
+        tasks: Vec<Spanned<TaskEntry>>,
+        history: Vec<Spanned<AlarmEntry>>,
+        latest_remote: Option<Spanned<AlarmEntry>>,
+        #[serde(rename = "event")]
+        events: Vec<Spanned<Event>>,
     }
 }
 
@@ -279,78 +245,34 @@ enum KindEntry {
     Scara,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum ServoEntry {
-    Servo,
-    Brake,
-    Free,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum ArmEntry {
-    Right,
-    Left,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct RobotEntry {
-    kind: KindEntry,
-    arms: [f64; 2],
-    axes: usize,
-    model: u16,
-    pulses_per_unit: Vec<f64>,
-    limits: Vec<[i32; 2]>,
-    speeds: Vec<f64>,
-    motors: Vec<Motor>,
-    methods: Vec<Method>,
-    origin: Vec<bool>,
-    position: Vec<i32>,
-    servos: Vec<ServoEntry>,
-    load: Vec<i32>,
-    obstacles: BTreeMap<String, i32>,
-    payload_g: i32,
-    max_payload_g: i32,
-    auto_speed: i32,
-    manual_speed: i32,
-    program_speed: i32,
-    inching: i32,
-    shift: usize,
-    hand: Option<usize>,
-    arm: ArmEntry,
-    parameters: BTreeMap<String, Vec<i32>>,
-}
-
-impl Default for RobotEntry {
-    fn default() -> Self {
-        Self {
-            kind: KindEntry::Cartesian,
-            arms: defaults::ARMS,
-            axes: 4,
-            model: 2000,
-            pulses_per_unit: Vec::new(),
-            limits: Vec::new(),
-            speeds: Vec::new(),
-            motors: Vec::new(),
-            methods: Vec::new(),
-            origin: Vec::new(),
-            position: Vec::new(),
-            servos: Vec::new(),
-            load: Vec::new(),
-            obstacles: BTreeMap::new(),
-            payload_g: 1000,
-            max_payload_g: 10_000,
-            auto_speed: 100,
-            manual_speed: 20,
-            program_speed: 100,
-            inching: 100,
-            shift: 0,
-            hand: None,
-            arm: ArmEntry::Right,
-            parameters: BTreeMap::new(),
-        }
+with_defaults! {
+    #[derive(Debug, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    struct RobotEntry {
+        kind: KindEntry = KindEntry::Cartesian,
+        arms: [f64; 2] = defaults::ARMS,
+        axes: usize = 4,
+        model: u16 = 2000,
+        pulses_per_unit: Vec<f64>,
+        limits: Vec<[i32; 2]>,
+        speeds: Vec<f64>,
+        motors: Vec<Motor>,
+        methods: Vec<Method>,
+        origin: Vec<bool>,
+        position: Vec<i32>,
+        servos: Vec<Servo>,
+        load: Vec<i32>,
+        obstacles: BTreeMap<String, i32>,
+        payload_g: i32 = 1000,
+        max_payload_g: i32 = 10_000,
+        auto_speed: i32 = 100,
+        manual_speed: i32 = 20,
+        program_speed: i32 = 100,
+        inching: i32 = 100,
+        shift: usize,
+        hand: Option<usize>,
+        arm: Arm,
+        parameters: BTreeMap<String, Vec<i32>>,
     }
 }
 
@@ -359,7 +281,7 @@ impl Default for RobotEntry {
 struct PointEntry {
     pulse: Option<[i32; 4]>,
     mm: Option<[f64; 4]>,
-    hand: Option<ArmEntry>,
+    hand: Option<Arm>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -384,15 +306,6 @@ struct ProgramEntry {
     text: String,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Default)]
-#[serde(rename_all = "lowercase")]
-enum StateEntry {
-    #[default]
-    Stop,
-    Run,
-    Suspend,
-}
-
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TaskEntry {
@@ -403,7 +316,7 @@ struct TaskEntry {
     #[serde(default = "first_line")]
     line: usize,
     #[serde(default)]
-    state: StateEntry,
+    state: State,
 }
 
 const fn usual_priority() -> u8 {
@@ -465,7 +378,6 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
         Ok(())
     })?;
     Ok(World {
-        now: Now::ZERO,
         switches: Switches {
             mode: entries.mode,
             boxed: entries.r#box,
@@ -476,24 +388,12 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
             origin_both: entries.di17 == Di17::AbsOrg,
             keep: entries.movei_start == MoveiStart::Keep,
         },
-        link: Link::Waiting,
-        link_alarm: LINK,
         link_within: entries.link_within_ms.map(Duration::from_millis),
-        inputs: resting(),
         motor: entries.servo,
-        robots: Vec::new(),
-        memory: Memory::default(),
-        alarms: AlarmLog::default(),
-        programs: BTreeMap::new(),
-        tasks: Vec::new(),
-        reset_done: false,
         clock: (clock, Now::ZERO),
         versions: versions(&entries.versions, source)?,
         slots,
-        delayed: Vec::new(),
-        events: Timeline::default(),
-        why: None,
-        restless: false,
+        ..World::default()
     })
 }
 

@@ -8,17 +8,21 @@ use super::motion::{End, Owner};
 use super::moves::Speed;
 use super::program::{Operand, Statement};
 use super::world::World;
-use crate::Now;
+use crate::{Now, refuse_if};
 
 const MAX_CALLS: usize = 16;
 pub(super) const TASKS: u8 = 16;
 /// The program whose subroutines every program can call (4.6.4).
 const COMMON: &str = "COMMON";
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
 pub(super) enum State {
+    #[default]
+    #[serde(rename = "stop")]
     Stopped,
+    #[serde(rename = "run")]
     Running,
+    #[serde(rename = "suspend")]
     Suspended,
 }
 
@@ -151,9 +155,7 @@ impl World {
     /// Resets one task to the first line.
     pub(super) fn reset_task(&mut self, at: usize) -> Result<(), Fault> {
         let task = self.tasks.get_mut(at).ok_or_else(no_task)?;
-        if task.state == State::Running {
-            return Err(running());
-        }
+        refuse_if(task.state == State::Running, running())?;
         task.reset();
         self.reset_done = self.tasks.iter().all(|task| task.at == (task.program, 0) && task.calls.is_empty());
         Ok(())
@@ -161,9 +163,7 @@ impl World {
 
     pub(super) fn start_all(&mut self) -> Result<(), Fault> {
         self.may_run()?;
-        if self.tasks.is_empty() {
-            return Err(no_task());
-        }
+        refuse_if(self.tasks.is_empty(), no_task())?;
         (0..self.tasks.len()).for_each(|at| self.start(at, StopPoint::End));
         Ok(())
     }

@@ -7,7 +7,7 @@ use jiff::SignedDuration;
 use jiff::civil::DateTime;
 
 use super::alarms::{
-    AlarmLog, AlarmSource, EMERGENCY_STOP, Fault, MOVING, NO_AXIS, NO_ORIGIN, NO_POWER, NO_ROBOT, NOT_AUTO,
+    AlarmLog, AlarmSource, EMERGENCY_STOP, Fault, LINK, MOVING, NO_AXIS, NO_ORIGIN, NO_POWER, NO_ROBOT, NOT_AUTO,
 };
 use super::console;
 use super::memory::Memory;
@@ -15,26 +15,27 @@ use super::motion::{End, Motion, Owner};
 use super::program::Program;
 use super::robot::{ALL, Robot, Servo};
 use super::task::Task;
-use crate::Now;
-use crate::simulator::refuse_if;
 use crate::simulator::timeline::Timeline;
+use crate::simulator::with_defaults;
 use crate::yrcx::alarm::Alarm;
 use crate::yrcx::image::Image;
-use crate::yrcx::signal::input;
+use crate::yrcx::signal::{input, resting};
+use crate::{Now, refuse_if};
 
 /// Scan time of the controller (chapter 2, 1.2).
 pub(super) const SCAN: Duration = Duration::from_millis(5);
 
 /// Selected mode.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Mode {
+    #[default]
     Auto,
     Manual,
 }
 
 /// Switches of the operator, and parameters that the simulator uses.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent switch")]
 pub(super) struct Switches {
     pub(super) mode: Mode,
@@ -79,35 +80,37 @@ pub(super) enum Action {
     PowerLoss,
 }
 
-#[derive(Debug, Clone)]
-pub(super) struct World {
-    pub(super) now: Now,
-    pub(super) switches: Switches,
-    pub(super) link: Link,
-    /// Alarm for a lost link. Each fieldbus has its own alarm.
-    pub(super) link_alarm: Alarm,
-    /// Time after which the link counts as lost if no master connects.
-    pub(super) link_within: Option<Duration>,
-    pub(super) inputs: Image,
-    pub(super) motor: bool,
-    pub(super) robots: Vec<Robot>,
-    pub(super) memory: Memory,
-    pub(super) alarms: AlarmLog,
-    pub(super) programs: BTreeMap<u8, Program>,
-    pub(super) tasks: Vec<Task>,
-    pub(super) reset_done: bool,
-    /// Date and time, and the time of the simulator at which they were set.
-    pub(super) clock: (DateTime, Now),
-    /// Software versions, as words of the answer in 4.7.1.
-    pub(super) versions: [u16; 7],
-    /// Modules by controller and slot (4.7.15).
-    pub(super) slots: BTreeMap<u8, [u16; 4]>,
-    pub(super) delayed: Vec<(Now, Action)>,
-    pub(super) events: Timeline,
-    /// Last refusal or abort, for the `why` command.
-    pub(super) why: Option<Fault>,
-    /// Whether something has changed for which a program may wait. Then one more scan is needed.
-    pub(super) restless: bool,
+with_defaults! {
+    #[derive(Debug, Clone)]
+    pub(super) struct World {
+        pub(super) now: Now,
+        pub(super) switches: Switches,
+        pub(super) link: Link = Link::Waiting,
+        /// Alarm for a lost link. Each fieldbus has its own alarm.
+        pub(super) link_alarm: Alarm = LINK,
+        /// Time after which the link counts as lost if no master connects.
+        pub(super) link_within: Option<Duration>,
+        pub(super) inputs: Image = resting(),
+        pub(super) motor: bool,
+        pub(super) robots: Vec<Robot>,
+        pub(super) memory: Memory,
+        pub(super) alarms: AlarmLog,
+        pub(super) programs: BTreeMap<u8, Program>,
+        pub(super) tasks: Vec<Task>,
+        pub(super) reset_done: bool,
+        /// Date and time, and the time of the simulator at which they were set.
+        pub(super) clock: (DateTime, Now),
+        /// Software versions, as words of the answer in 4.7.1.
+        pub(super) versions: [u16; 7],
+        /// Modules by controller and slot (4.7.15).
+        pub(super) slots: BTreeMap<u8, [u16; 4]>,
+        pub(super) delayed: Vec<(Now, Action)>,
+        pub(super) events: Timeline,
+        /// Last refusal or abort, for the `why` command.
+        pub(super) why: Option<Fault>,
+        /// Whether something has changed for which a program may wait. Then one more scan is needed.
+        pub(super) restless: bool,
+    }
 }
 
 impl World {
@@ -258,9 +261,7 @@ impl World {
 
     /// Checks that motor power can be switched on.
     pub(super) fn may_power(&self) -> Result<(), Fault> {
-        if self.emergency() {
-            return Err(Fault::emergency());
-        }
+        refuse_if(self.emergency(), Fault::emergency())?;
         self.no_alarm()
     }
 
@@ -275,9 +276,7 @@ impl World {
     /// Checks that programs can run.
     pub(super) fn may_run(&self) -> Result<(), Fault> {
         self.may_power()?;
-        if self.held() {
-            return Err(Fault::stopped());
-        }
+        refuse_if(self.held(), Fault::stopped())?;
         if self.switches.mode != Mode::Auto || self.switches.boxed {
             return Err(Fault::new(
                 NOT_AUTO,
@@ -291,9 +290,7 @@ impl World {
     /// Checks that these axes can move.
     pub(super) fn may_move(&self, number: usize, axes: u8) -> Result<(), Fault> {
         self.may_power()?;
-        if self.held() {
-            return Err(Fault::stopped());
-        }
+        refuse_if(self.held(), Fault::stopped())?;
         self.has_axes(number, axes)?;
         let robot = self.robot(number)?;
         let off = robot.axes.iter().enumerate().position(|(at, axis)| axes >> at & 1 == 1 && axis.servo != Servo::On);

@@ -22,6 +22,8 @@ const DIRECTIONS: Show = Show::Choice(&[(0, "+"), (1, "-")]);
 const SPEED_MODES: Show = Show::Choice(&[(0, "not given"), (1, "0.01 % of the maximum"), (2, "%")]);
 const LINEAR_SPEED_MODES: Show = Show::Choice(&[(0, "not given"), (1, "0.01 % of the maximum"), (2, "%"), (3, "mm/s")]);
 const ORIGIN_CHOICES: Show = Show::Choice(&[(0, "all"), (1, "incremental"), (2, "absolute"), (4, "incomplete")]);
+const PUSH_RESULTS: Show = Show::Choice(&[(0, "ended without time-out"), (1, "completed by time-out")]);
+const MOTOR_TYPES: Show = Show::Choice(&[(0, "all"), (1, "incremental"), (2, "absolute")]);
 const SERVO_STATES: Show = Show::Choice(&[(0, "brake"), (1, "servo"), (2, "free"), (9, "no axis")]);
 const ORIGIN_STATES: Show = Show::Choice(&[(0, "incomplete"), (1, "complete"), (9, "not applicable")]);
 const TASK_STATES: Show =
@@ -205,14 +207,7 @@ pub const TORQUE_LIMIT: Layout =
 pub const POSITIONS: Layout =
     &joined(&when(&per_axis(4, PULSE), Key::Report, 1), &when(&per_axis(4, MM), Key::Report, 2));
 /// Result of a push.
-pub const PUSH_RESULT: Layout = &[Field::bits(
-    Key::PushResult,
-    "push",
-    3,
-    0,
-    1,
-    Show::Choice(&[(0, "ended without time-out"), (1, "completed by time-out")]),
-)];
+pub const PUSH_RESULT: Layout = &[Field::bits(Key::PushResult, "push", 3, 0, 1, PUSH_RESULTS)];
 
 const fn joined(first: &[Field; 4], second: &[Field; 4]) -> [Field; 8] {
     let mut all = [first[0]; 8];
@@ -449,16 +444,8 @@ pub const SPEED_STATUS: Layout = &[
     Field::word(Key::ProgramSpeed, "program speed", 4, PERCENTS),
 ];
 /// Type of the motors whose origin status is requested. It is valid only with a robot.
-pub const MOTOR_TYPE: Layout = &[Field::bits(
-    Key::MotorType,
-    "motor type",
-    2,
-    0,
-    3,
-    Show::Choice(&[(0, "all"), (1, "incremental"), (2, "absolute")]),
-)
-.when(Key::Robot, 1, 4)
-.optional()];
+pub const MOTOR_TYPE: Layout =
+    &[Field::bits(Key::MotorType, "motor type", 2, 0, 3, MOTOR_TYPES).when(Key::Robot, 1, 4).optional()];
 
 const fn origin(key: Key, name: &'static str, word: usize) -> Field {
     Field::word(key, name, word, ORIGIN_STATES).when(Key::Robot, 1, 4)

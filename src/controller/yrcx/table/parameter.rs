@@ -58,16 +58,12 @@ pub(super) const NAMES: [(u16, &str); PARAMETERS.len()] = {
     names
 };
 
-const fn robot(number: u16, name: &'static str, meaning: &'static str, unit: &'static str) -> Parameter {
+type Text = &'static str;
+
+const fn robot(number: u16, name: Text, meaning: Text, unit: Text) -> Parameter {
     Parameter { number, name, meaning, unit, per_axis: false, span: PAYLOAD }
 }
 
-const fn axis(
-    number: u16,
-    name: &'static str,
-    meaning: &'static str,
-    unit: &'static str,
-    span: (i32, i32),
-) -> Parameter {
+const fn axis(number: u16, name: Text, meaning: Text, unit: Text, span: (i32, i32)) -> Parameter {
     Parameter { number, name, meaning, unit, per_axis: true, span }
 }

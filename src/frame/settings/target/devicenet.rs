@@ -41,7 +41,7 @@ pub const CAN: Scheme = Scheme {
         if !is_name {
             return Err(format!("'{interface}' is not the name of an interface such as can0"));
         }
-        node(network::AdapterLocation::SocketCan { interface: interface.to_owned() }, query)
+        node(network::AdapterLocation::SocketCan(interface.to_owned()), query)
     },
 };
 
@@ -87,7 +87,7 @@ fn node(place: network::AdapterLocation, query: &mut Query) -> Result<Place, Str
         return Err(format!("mac and master are both {mac}: this master needs a MAC ID that no other node has"));
     }
     let bitrate = match place {
-        network::AdapterLocation::SocketCan { .. } => Bitrate::K500,
+        network::AdapterLocation::SocketCan(_) => Bitrate::K500,
         _ => choice(query, "bitrate", [("500k", Bitrate::K500), ("250k", Bitrate::K250), ("125k", Bitrate::K125)])?,
     };
     let usual = Images::usual(Vec::new(), Some(bitrate));
@@ -99,7 +99,7 @@ fn node(place: network::AdapterLocation, query: &mut Query) -> Result<Place, Str
     let address = match &place {
         network::AdapterLocation::Serial { path, .. } => Address::device(path),
         network::AdapterLocation::Tcp { host, port } => Address::network("slcan", host, *port),
-        network::AdapterLocation::SocketCan { interface } => Address::Device(format!("can {interface}")),
+        network::AdapterLocation::SocketCan(interface) => Address::Device(format!("can {interface}")),
     };
     Ok(Place {
         address: address.station(mac.number()),
@@ -153,7 +153,7 @@ mod tests {
             ..usual.clone()
         };
         assert_eq!(options::<DeviceNet>("slcan://10.0.0.1:4001?mac=5&bitrate=125k"), slow);
-        let place = network::AdapterLocation::SocketCan { interface: "can0".to_owned() };
+        let place = network::AdapterLocation::SocketCan("can0".to_owned());
         assert_eq!(options::<DeviceNet>("can://can0?mac=5"), DeviceNet { place, ..usual });
     }
 

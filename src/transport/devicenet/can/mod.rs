@@ -252,11 +252,8 @@ pub enum PortError {
         why: String,
     },
     /// The adapter sends no answer.
-    #[error("{path}: no answer from the adapter")]
-    Mute {
-        /// Path of the adapter.
-        path: String,
-    },
+    #[error("{0}: no answer from the adapter")]
+    Mute(String),
     /// The adapter was disconnected.
     #[error("{path} was disconnected: {why}")]
     Gone {
@@ -266,17 +263,11 @@ pub enum PortError {
         why: String,
     },
     /// The adapter sends more data than a bus can carry.
-    #[error("{path} sends data without a pause; it is not a CAN adapter")]
-    Flooded {
-        /// Path of the adapter.
-        path: String,
-    },
+    #[error("{0} sends data without a pause; it is not a CAN adapter")]
+    Flooded(String),
     /// The adapter accepts no more frames.
-    #[error("{path} accepts no more frames")]
-    Stuck {
-        /// Path of the adapter.
-        path: String,
-    },
+    #[error("{0} accepts no more frames")]
+    Stuck(String),
 }
 
 /// A boxed future.

@@ -25,7 +25,8 @@ const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
 /// A byte stream.
 #[derive(Debug)]
 pub struct Pipe {
-    writer: Writer,
+    /// Write half of the pipe.
+    pub writer: Writer,
     incoming: Receiver<io::Result<Vec<u8>>>,
 }
 
@@ -129,11 +130,6 @@ impl Pipe {
             }
         })?;
         Ok(pipe)
-    }
-
-    /// Write half of the pipe.
-    pub const fn writer(&self) -> &Writer {
-        &self.writer
     }
 
     /// Waits for bytes. The future is cancel safe.

@@ -70,7 +70,7 @@ impl SlcanPort {
         while port.read(Instant::now() + QUIET).await? {
             port.adapter_messages.clear();
             if begun.elapsed() > LEFTOVERS {
-                return Err(PortError::Flooded { path: port.path.clone() });
+                return Err(PortError::Flooded(port.path.clone()));
             }
         }
         port.has_received = false;
@@ -90,7 +90,7 @@ impl SlcanPort {
             (None, None, None) if port.has_received => {
                 return Err(port.wrong("it does not answer as an SLCAN adapter"));
             }
-            (None, None, None) => return Err(PortError::Mute { path: port.path.clone() }),
+            (None, None, None) => return Err(PortError::Mute(port.path.clone())),
             _ => {}
         }
         if let Some(AdapterMessage::Flags(flags)) =
@@ -136,12 +136,12 @@ impl SlcanPort {
     }
 
     fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
-        if self.pipe.writer().waiting() > MAX_UNWRITTEN_BYTES {
-            return Err(PortError::Stuck { path: self.path.clone() });
+        if self.pipe.writer.waiting() > MAX_UNWRITTEN_BYTES {
+            return Err(PortError::Stuck(self.path.clone()));
         }
         self.tap.pass(|| TrafficRecord::Adapter { direction: Direction::Sent, bytes: bytes.to_vec() });
         // If the stream is closed, the next read reports the error.
-        self.pipe.writer().write(bytes);
+        self.pipe.writer.write(bytes);
         Ok(())
     }
 
@@ -164,7 +164,7 @@ impl SlcanPort {
         self.received.1 += bytes.len();
         self.has_received |= !bytes.is_empty();
         if self.received.1 > MAX_UNREAD_BYTES {
-            return Err(PortError::Flooded { path: self.path.clone() });
+            return Err(PortError::Flooded(self.path.clone()));
         }
         let Self { lines, adapter_messages, .. } = self;
         adapter_messages
@@ -228,6 +228,6 @@ impl CanPort for SlcanPort {
 impl Drop for SlcanPort {
     /// Closes the channel. Otherwise the adapter would continue to acknowledge frames.
     fn drop(&mut self) {
-        self.pipe.writer().write(b"C\r");
+        self.pipe.writer.write(b"C\r");
     }
 }

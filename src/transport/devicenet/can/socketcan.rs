@@ -111,7 +111,7 @@ impl SocketCan {
 impl CanPort for SocketCan {
     fn send(&mut self, frame: &Frame) -> Result<(), PortError> {
         if self.outgoing.len() >= MAX_QUEUED_FRAMES {
-            return Err(PortError::Stuck { path: self.interface.clone() });
+            return Err(PortError::Stuck(self.interface.clone()));
         }
         let id = StandardId::new(frame.id());
         self.outgoing.extend(id.and_then(|id| CanFrame::new(id, frame.data())));

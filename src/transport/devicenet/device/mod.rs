@@ -86,14 +86,17 @@ enum Phase {
 
 /// A simulated slave.
 pub struct Device<A> {
-    setup: Setup,
-    application: A,
+    /// The configuration.
+    pub setup: Setup,
+    /// The application.
+    pub application: A,
     phase: Phase,
     allocation: Allocation,
     messages: Messages,
     polled: Option<Polled>,
     image_in: Vec<u8>,
-    fault: Option<DeviceFault>,
+    /// The active fault.
+    pub fault: Option<DeviceFault>,
     outbox: VecDeque<Frame>,
     answers: u64,
 }
@@ -126,24 +129,9 @@ impl<A: Application> Device<A> {
         Self { phase: Phase::OnLine, ..Self::new(setup, application) }
     }
 
-    /// The application.
-    pub const fn application(&mut self) -> &mut A {
-        &mut self.application
-    }
-
-    /// The configuration.
-    pub const fn setup(&self) -> &Setup {
-        &self.setup
-    }
-
     /// Activates a fault; `None` deactivates the active fault.
     pub const fn set_fault(&mut self, fault: Option<DeviceFault>) {
         self.fault = fault;
-    }
-
-    /// The active fault.
-    pub const fn fault(&self) -> Option<DeviceFault> {
-        self.fault
     }
 
     /// Whether the slave is on line.

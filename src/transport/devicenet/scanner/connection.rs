@@ -32,28 +32,24 @@ const RATE: &str = "the setting of the packet rate";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
-    /// The master is not on line yet.
+    // The master is not on line yet.
     New,
-    /// The master allocates the connections. `again` is `true` for the second attempt, after the owner was read.
-    Allocating {
-        is_retry: bool,
-    },
-    /// The master reads which connections its own MAC owns.
+    // The master allocates the connections. `again` is `true` for the second attempt, after the owner was read.
+    Allocating { is_retry: bool },
+    // The master reads which connections its own MAC owns.
     AskingOwner,
-    /// The master releases connections that an earlier use of this MAC has left allocated.
+    // The master releases connections that an earlier use of this MAC has left allocated.
     Freeing,
-    /// The master reads the size of the image from the slave.
+    // The master reads the size of the image from the slave.
     AskingProduced,
-    /// The master reads the size of the image to the slave. The value is the size of the image from the slave.
+    // The master reads the size of the image to the slave. The value is the size of the image from the slave.
     AskingConsumed(u16),
-    /// The master sets the packet rate, which establishes the connection.
+    // The master sets the packet rate, which establishes the connection.
     SettingRate,
     Open,
-    /// The master releases the connections. Then the connection ends. If `again` is `true`, it opens again.
-    Releasing {
-        is_retry: bool,
-    },
-    /// The master waits until the next attempt to open the connection.
+    // The master releases the connections. Then the connection ends. If `again` is `true`, it opens again.
+    Releasing { is_retry: bool },
+    // The master waits until the next attempt to open the connection.
     BoxedFuture(Now),
     Ended,
 }
@@ -340,7 +336,7 @@ impl Connection {
                 Purpose::Messages { .. } => self.opened(now, 0),
             },
             Err(Error::Refused { additional: owner::ANOTHER_MASTER, mac, .. }) => {
-                self.give_up(now, Error::Owned { mac }, false);
+                self.give_up(now, Error::Owned(mac), false);
             }
             // The connections are already allocated. Either an earlier process with this MAC ended without a release,
             // or the answer to the first attempt was lost.
@@ -359,7 +355,7 @@ impl Connection {
             Ok([choice, master, ..]) if *master == self.own_mac.number() && *choice != 0 => {
                 self.request(now, Phase::Freeing, &Request::release(*choice));
             }
-            Ok([_, master, ..]) if Mac::new(*master).is_some() => self.give_up(now, Error::Owned { mac }, false),
+            Ok([_, master, ..]) if Mac::new(*master).is_some() => self.give_up(now, Error::Owned(mac), false),
             Ok([_, _, ..]) => self.allocate(now, true),
             Ok(_) => self.give_up(now, Error::Senseless { mac, what: OWNER, why: "it is too short" }, false),
             // There is no answer, so the explicit connection has timed out, but the poll connection still exists.

@@ -28,10 +28,7 @@ const CHECKS: u8 = 2;
 
 /// Number that identifies a request of a caller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Token(
-    /// Any number that the caller selects.
-    pub u64,
-);
+pub struct Token(pub u64);
 
 /// Result of a request.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -111,7 +111,7 @@ fn reports_why_a_connection_fails() {
         device.set_fault(Some(fault));
         device
     };
-    assert_eq!(refused(with(DeviceFault::ForeignOwner)), Error::Owned { mac: mac(5) });
+    assert_eq!(refused(with(DeviceFault::ForeignOwner)), Error::Owned(mac(5)));
     assert!(matches!(refused(with(DeviceFault::OtherSize)), Error::Size { produced_size: 50, consumed_size: 50, .. }));
     assert!(matches!(refused(with(DeviceFault::DuplicateMac)), Error::Duplicate { vendor: 636, .. }));
     let silent = Error::Silent {
@@ -141,7 +141,7 @@ fn does_not_take_the_slave_of_another_master() {
     other.scanner.open(LINK, images(5)).unwrap();
     // The first master is silent, so its poll connection times out. Its explicit connection stays open for 10 s.
     other.until(SECOND * 5, |world| world.view().state == State::Closed);
-    assert_eq!(other.view().last_error, Some(Error::Owned { mac: mac(5) }));
+    assert_eq!(other.view().last_error, Some(Error::Owned(mac(5))));
 }
 
 /// A process with the same MAC was killed. The master releases the connections of that process, and then allocates them

@@ -48,7 +48,7 @@ fn our_slave_serves_a_scripted_master() {
         let hub = Hub::start(Bitrate::K500, Some(device), &listen(), None).unwrap();
         let output = Command::new(python)
             .arg(script)
-            .arg(channel(&hub.endpoint_addresses()[place]))
+            .arg(channel(&hub.endpoint_addresses[place]))
             .arg(size.to_string())
             .output()
             .unwrap();
@@ -68,11 +68,11 @@ fn another_master_polls_our_slave() {
         let Some((python, script)) = script("others.py") else { return };
         let device = Device::on_line(setup(5, 4), Mirror::default());
         let hub = Hub::start(Bitrate::K500, Some(device), &listen(), None).unwrap();
-        let output = Command::new(python).arg(script).arg(channel(&hub.endpoint_addresses()[place])).output().unwrap();
+        let output = Command::new(python).arg(script).arg(channel(&hub.endpoint_addresses[place])).output().unwrap();
         let told = String::from_utf8_lossy(&output.stdout);
         let complaints = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success() && told.contains("seen its images come back"), "{told}{complaints}");
-        assert_eq!(hub.with(|device, _| device.application().image.clone()), Some(vec![0x41, 0, 5, 0]));
+        assert_eq!(hub.with(|device, _| device.application.image.clone()), Some(vec![0x41, 0, 5, 0]));
     }
 }
 
@@ -83,7 +83,7 @@ async fn our_master_satisfies_a_strict_slave() {
         let hub: Hub<Mirror> = Hub::start(Bitrate::K500, None, &listen(), None).unwrap();
         let mut slave = Command::new(python)
             .arg(script)
-            .arg(channel(&hub.endpoint_addresses()[place]))
+            .arg(channel(&hub.endpoint_addresses[place]))
             .arg(size.to_string())
             .stdout(Stdio::piped())
             .spawn()
@@ -91,17 +91,17 @@ async fn our_master_satisfies_a_strict_slave() {
         let mut told = BufReader::new(slave.stdout.take().unwrap());
         let mut ready = String::new();
         told.read_line(&mut ready).unwrap();
-        let address: SocketAddr = hub.endpoint_addresses()[0].parse().unwrap();
+        let address: SocketAddr = hub.endpoint_addresses[0].parse().unwrap();
         let place = AdapterLocation::Tcp { host: address.ip().to_string(), port: address.port() };
         let identity = Some(Identity { mac: mac(1), vendor: 0xFFFF, serial: 7 });
         let network =
             Network::open(&Adapter { place, bitrate: Bitrate::K500, identity }, Tap::default()).await.unwrap();
         let mut connection = network.connect(images(5)).await.unwrap();
-        let first = connection.view().sent;
-        connection.until(|view| view.sent > first).await;
+        let first = connection.views.now().sent;
+        connection.views.until(|view| view.sent > first).await;
         let image = vec![0x5A; size.into()];
         let change = connection.set_image(1, &image).unwrap();
-        connection.until(|view| view.sent >= change).await;
+        connection.views.until(|view| view.sent >= change).await;
         connection.close().await.unwrap();
         let mut rest = String::new();
         told.read_to_string(&mut rest).unwrap();

@@ -133,7 +133,7 @@ impl World {
     }
 
     pub fn mirror(&mut self) -> &mut Mirror {
-        self.devices[0].application()
+        &mut self.devices[0].application
     }
 
     /// Runs until the condition is true, and returns the time. Panics after `longest`.

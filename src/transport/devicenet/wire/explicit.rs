@@ -106,8 +106,6 @@ pub mod owner {
     pub const INVALID_CHOICE: u8 = 0x02;
     /// The slave is a group 2 only server. It accepts no other unconnected service than allocate and release.
     pub const UNCONNECTED: u8 = 0x03;
-    /// The slave has no free resource.
-    pub const NO_RESOURCE: u8 = 0x04;
     /// There is no additional code.
     pub const NONE: u8 = 0xFF;
 }

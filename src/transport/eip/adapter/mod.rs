@@ -167,7 +167,8 @@ struct IoConnection {
 #[derive(Debug)]
 pub struct Adapter<A> {
     setup: Setup,
-    application: A,
+    /// The application.
+    pub application: A,
     images: BTreeMap<u32, Vec<u8>>,
     clients: BTreeMap<u64, Client>,
     connections: Vec<IoConnection>,
@@ -192,11 +193,6 @@ impl<A: Application> Adapter<A> {
             fault: None,
             outputs: VecDeque::new(),
         }
-    }
-
-    /// The application.
-    pub const fn application(&mut self) -> &mut A {
-        &mut self.application
     }
 
     /// Sets the address and the image port. The driver calls this function after it has bound the sockets.

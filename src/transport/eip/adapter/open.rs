@@ -65,7 +65,7 @@ impl<A: Application> Adapter<A> {
         large: bool,
     ) -> Result<AcceptedConnection, (Status, Vec<u8>)> {
         let open = Open::parse(data, large).map_err(|error| {
-            let in_path = matches!(error.problem, Problem::Value { .. });
+            let in_path = matches!(error.problem, Problem::Value(_));
             let status = if in_path { Status::connection(SEGMENT, &[]) } else { Status::general(NOT_ENOUGH_DATA) };
             (status, Vec::new())
         })?;

@@ -55,7 +55,8 @@ impl AdapterAddresses {
 pub struct Server<A: Application + 'static> {
     inner: Arc<SharedState<A>>,
     address: SocketAddrV4,
-    io_port: u16,
+    /// UDP port for images.
+    pub io_port: u16,
     _engine: Engine,
 }
 
@@ -127,11 +128,6 @@ impl<A: Application> Server<A> {
     /// Address for sessions.
     pub const fn address(&self) -> SocketAddrV4 {
         self.address
-    }
-
-    /// UDP port for images.
-    pub const fn io_port(&self) -> u16 {
-        self.io_port
     }
 
     /// Changes the faults for images to the adapter and from the adapter.

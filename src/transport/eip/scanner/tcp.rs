@@ -94,7 +94,7 @@ pub(super) async fn run(
     }
     // This error is for requests that wait until the session is registered. After the registration, each pending
     // request gets its own error.
-    tell(&mut |slot, _| slot.core.disconnected(&EipError::Hangup { what: "RegisterSession" }));
+    tell(&mut |slot, _| slot.core.disconnected(&EipError::Hangup("RegisterSession")));
 }
 
 /// Connects from the local address of the image socket, because the device sends its images to the address that sent

@@ -7,10 +7,7 @@ pub const HEADER_LEN: usize = 24;
 
 /// Encapsulation command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Command(
-    /// Code of the command.
-    pub u16,
-);
+pub struct Command(pub u16);
 
 impl Command {
     /// NOP. The device does not answer it.

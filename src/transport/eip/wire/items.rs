@@ -1,5 +1,6 @@
 //! Codec for the common packet format: typed items with lengths (volume 2, 2-6).
 
+use crate::refuse_if;
 use std::net::{Ipv4Addr, SocketAddrV4};
 
 use super::{Reader, WireError, len16};
@@ -8,8 +9,6 @@ use super::{Reader, WireError, len16};
 pub mod kind {
     /// Null address of an unconnected message.
     pub const NULL: u16 = 0x0000;
-    /// Connection id.
-    pub const CONNECTED_ADDRESS: u16 = 0x00A1;
     /// Connected message.
     pub const CONNECTED_DATA: u16 = 0x00B1;
     /// Unconnected message.
@@ -56,9 +55,7 @@ impl<'a> Item<'a> {
     /// Decodes the item count and the items. More bytes may follow after the items.
     fn read_counted(reader: &mut Reader<'a>) -> Result<Vec<Self>, WireError> {
         let count = reader.u16("item count")?;
-        if count > MAX_ITEMS {
-            return Err(reader.wrong("item count", 2, count));
-        }
+        refuse_if(count > MAX_ITEMS, reader.wrong("item count", 2, count))?;
         let mut items = Vec::with_capacity(usize::from(count));
         for _ in 0..count {
             items.push(Self::read(reader)?);
@@ -130,9 +127,7 @@ impl<'a> RrData<'a> {
     /// Decodes the fields before the items. Returns the timeout.
     fn head(reader: &mut Reader<'a>) -> Result<u16, WireError> {
         let interface = reader.u32("interface handle")?;
-        if interface != 0 {
-            return Err(reader.wrong("interface handle", 4, interface));
-        }
+        refuse_if(interface != 0, reader.wrong("interface handle", 4, interface))?;
         reader.u16("timeout")
     }
 
@@ -159,9 +154,7 @@ impl<'a> RrData<'a> {
 pub(super) fn sockaddr(bytes: &[u8]) -> Result<SocketAddrV4, WireError> {
     let mut reader = Reader::little(bytes);
     let family = u16::from_be_bytes(reader.array("address family")?);
-    if family != AF_INET {
-        return Err(reader.wrong("address family", 2, family));
-    }
+    refuse_if(family != AF_INET, reader.wrong("address family", 2, family))?;
     let port = u16::from_be_bytes(reader.array("port")?);
     let address = Ipv4Addr::from(reader.array::<4>("address")?);
     reader.take(8, "padding of the address")?;

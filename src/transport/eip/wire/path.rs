@@ -61,10 +61,7 @@ const LONG_PORT: u8 = 0x0F;
 
 /// A sequence of segments.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
-pub struct Path(
-    /// The segments.
-    pub Vec<Segment>,
-);
+pub struct Path(pub Vec<Segment>);
 
 impl Path {
     /// Returns the path of an instance. Instance 0 is the class itself.

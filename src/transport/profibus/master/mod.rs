@@ -4,6 +4,7 @@
 //! The master never sends Clear, because Clear would be an emergency stop for a robot. The first image after every
 //! opening is the resting image.
 
+use crate::refuse_if;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -377,9 +378,7 @@ impl Master {
         match self.step {
             Step::Find => {
                 let Answer::Frame(Frame { control: Control::Answer(kind, _), .. }) = answer else { return Ok(()) };
-                if kind != Station::Slave {
-                    return Err(ProfibusError::IsMaster { station });
-                }
+                refuse_if(kind != Station::Slave, ProfibusError::IsMaster(station))?;
                 self.enter_step(now, Step::Diagnose);
             }
             Step::Diagnose => {
@@ -438,9 +437,7 @@ impl Master {
         }
         self.ident = diagnosis.ident;
         let master = diagnosis.master.filter(|master| *master != self.settings.master);
-        if master.is_some() || diagnosis.has(Flag::Locked) {
-            return Err(ProfibusError::Locked { station, master });
-        }
+        refuse_if(master.is_some() || diagnosis.has(Flag::Locked), ProfibusError::Locked { station, master })?;
         Ok(())
     }
 
@@ -557,7 +554,7 @@ impl Master {
         self.pending = None;
         self.request_started_at = None;
         let was_closing = self.view.state == State::Closing;
-        let must_be_quiet = matches!(error, ProfibusError::OtherMaster { .. } | ProfibusError::Unreadable { .. });
+        let must_be_quiet = matches!(error, ProfibusError::OtherMaster { .. } | ProfibusError::Unreadable(_));
         // Whether the slave has left data exchange while the link was open. The master then retries at once. If this
         // happens again before the link is open, the master waits first.
         let has_left = self.view.state == State::Open

@@ -70,9 +70,11 @@ enum State {
 #[derive(Debug)]
 pub struct Slave<P> {
     setup: Setup,
-    peer: P,
+    /// The image peer.
+    pub peer: P,
     state: State,
-    owner: Option<u8>,
+    /// Address of the owner.
+    pub owner: Option<u8>,
     /// Watchdog time.
     patience: Option<Duration>,
     /// Time at which the watchdog expires; `None` while it is off.
@@ -115,21 +117,6 @@ impl<P: ImagePeer> Slave<P> {
             answered: 0,
             exchanges: 0,
         }
-    }
-
-    /// The image peer.
-    pub const fn peer(&self) -> &P {
-        &self.peer
-    }
-
-    /// The image peer.
-    pub const fn peer_mut(&mut self) -> &mut P {
-        &mut self.peer
-    }
-
-    /// Address of the owner.
-    pub const fn owner(&self) -> Option<u8> {
-        self.owner
     }
 
     /// Number of data exchanges, without repeated requests.

@@ -164,11 +164,11 @@ fn sends_the_resting_image_first_and_exchanges_images() {
     let view =
         world.run(SEC, |view| view.sent >= change && view.input.as_ref().is_some_and(|input| input.image[0] == 7));
     assert_eq!(view.input.unwrap().image[..], image(7));
-    assert_eq!(world.slave.peer().history, [Some(resting()), Some(image(7))]);
+    assert_eq!(world.slave.peer.history, [Some(resting()), Some(image(7))]);
     world.master.close(world.now);
     let view = world.run(SEC, |view| view.state == State::Closed);
-    assert_eq!((view.last_error, world.slave.owner()), (None, None));
-    assert_eq!(world.slave.peer().history.last(), Some(&None));
+    assert_eq!((view.last_error, world.slave.owner), (None, None));
+    assert_eq!(world.slave.peer.history.last(), Some(&None));
     assert_eq!(world.sent.last().unwrap().1[7..16], hex("3D 3E 40 00 00 00 12 34 00")[..]);
 }
 
@@ -198,10 +198,10 @@ fn every_fault_of_a_slave_has_a_message_of_its_own() {
         world.slave.set_fault(Some(fault));
         let error = world.fails();
         assert!(error.contains(message), "{fault:?}: {error}");
-        assert_eq!(world.slave.peer().history.iter().flatten().find(|shown| **shown != resting()), None, "{fault:?}");
+        assert_eq!(world.slave.peer.history.iter().flatten().find(|shown| **shown != resting()), None, "{fault:?}");
         // The slave must not stay locked after a failed opening.
         if !matches!(fault, SlaveFault::Token | SlaveFault::Mute) {
-            assert_eq!(world.slave.owner(), None, "{fault:?}");
+            assert_eq!(world.slave.owner, None, "{fault:?}");
         }
     }
     assert_eq!(SlaveFault::ALL.len(), 14, "a new fault wants a message here, or a test that it does no harm");
@@ -220,7 +220,7 @@ fn recovers_from_single_faults_by_repetition() {
         assert_eq!(view.statistics.repeated > 0, fault != SlaveFault::Diagnosis, "{fault:?}");
         // If a request is repeated, the slave repeats its answer without executing the request again.
         assert!(world.slave.exchanges().abs_diff(view.statistics.sent) <= 1, "{fault:?}");
-        assert_eq!(world.slave.peer().history, [Some(resting()), Some(image(1))], "{fault:?}");
+        assert_eq!(world.slave.peer.history, [Some(resting()), Some(image(1))], "{fault:?}");
     }
 }
 
@@ -251,7 +251,7 @@ fn restarted_slave_gets_the_resting_image() {
     assert_eq!(outdated, Err(ProfibusError::Outdated));
     let again = world.run(10 * SEC, |view| view.state == State::Open);
     assert_eq!((again.state, again.generation), (State::Open, view.generation + 1));
-    assert_eq!(world.slave.peer().history, [Some(resting()), Some(image(9)), None, Some(resting())]);
+    assert_eq!(world.slave.peer.history, [Some(resting()), Some(image(9)), None, Some(resting())]);
     assert_eq!(world.master.set_image(view.generation, &image(9)), Err(ProfibusError::Outdated));
 }
 
@@ -262,9 +262,9 @@ fn slave_leaves_data_exchange_without_its_master() {
     let died = world.now;
     // The master does not run here. Time passes only for the line and the slave.
     world.wire.run(died + 490 * MS, &mut world.slave);
-    assert_eq!(world.slave.owner(), Some(2));
+    assert_eq!(world.slave.owner, Some(2));
     world.wire.run(died + 520 * MS, &mut world.slave);
-    assert_eq!((world.slave.owner(), world.slave.peer().image.as_ref()), (None, None));
+    assert_eq!((world.slave.owner, world.slave.peer.image.as_ref()), (None, None));
 }
 
 #[test]
@@ -277,7 +277,7 @@ fn reconnects_a_silent_slave() {
     world.slave.set_fault(None);
     let again = world.run(5 * SEC, |view| view.state == State::Open);
     assert_eq!((again.state, again.generation), (State::Open, view.generation + 1));
-    assert_eq!(world.slave.peer().history.last(), Some(&Some(resting())));
+    assert_eq!(world.slave.peer.history.last(), Some(&Some(resting())));
 }
 
 #[test]
@@ -396,7 +396,7 @@ fn commands(seed: u64, faults: &str) -> (Vec<u8>, Vec<u8>, View) {
             done.push(given);
         }
     }
-    let history = &world.slave.peer().history;
+    let history = &world.slave.peer.history;
     let shown: Vec<u8> = history.iter().map(|shown| shown.as_ref().map_or(0, |shown| shown[0])).collect();
     let mut before = 0;
     let mut executed = Vec::new();

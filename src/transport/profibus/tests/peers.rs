@@ -108,14 +108,14 @@ fn another_master_exchanges_48_bytes_with_our_slave() {
     let mut expected = vec![0; SIZE];
     (expected[0], expected[32]) = (0x5A, 0x41);
     assert_eq!(shown, Some(expected.clone()));
-    assert_eq!((slave.owner(), slave.peer().image.as_ref()), (Some(2), Some(&expected)));
+    assert_eq!((slave.owner, slave.peer.image.as_ref()), (Some(2), Some(&expected)));
     assert!(slave.exchanges() > 50, "{}", slave.exchanges());
 }
 
 #[test]
 fn slave_rejects_another_master_with_a_wrong_ident_number() {
     let (shown, slave) = drive(1000 * MS, 0x1235, None);
-    assert_eq!((shown, slave.owner(), slave.exchanges()), (None, None, 0));
+    assert_eq!((shown, slave.owner, slave.exchanges()), (None, None, 0));
 }
 
 #[test]

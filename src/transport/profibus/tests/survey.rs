@@ -38,7 +38,7 @@ fn survey_finds_a_slave_without_changing_it() {
     assert_eq!(diagnosis, "not ready for data, needs parameters, no master, ident 0x1234");
     assert_eq!(slave.configuration.as_deref().unwrap(), [0xC0, 0xD7, 0xD7]);
     assert_eq!(slave.inputs, Err(NoValueReason::Refused(Status::NoService)));
-    assert_eq!((world.slave.owner(), world.slave.peer().history.len()), (None, 0));
+    assert_eq!((world.slave.owner, world.slave.peer.history.len()), (None, 0));
     // The survey makes two attempts for each free address, and no more.
     assert_eq!(world.sent.len(), 125 * 2 + 5);
 }
@@ -51,7 +51,7 @@ fn survey_reads_an_owned_slave() {
     let found = survey(&mut world, 5..=5).unwrap();
     assert_eq!(found[0].inputs.as_deref().unwrap(), resting());
     assert_eq!(found[0].outputs.as_deref().unwrap(), resting());
-    assert_eq!(world.slave.owner(), Some(2));
+    assert_eq!(world.slave.owner, Some(2));
 }
 
 #[test]

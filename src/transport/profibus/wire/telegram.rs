@@ -1,6 +1,7 @@
 //! Codec for telegrams (part 4, section 4.6).
 
 use super::{Control, Problem, WireError};
+use crate::refuse_if;
 
 const SD1: u8 = 0x10;
 const SD2: u8 = 0x68;
@@ -119,9 +120,7 @@ impl Telegram {
             SD3 => frame(bytes, 1, HEADER + FIXED),
             SD2 => {
                 let Some(&len) = bytes.get(1) else { return Ok(Parsed::Part(4)) };
-                if !LENGTHS.contains(&len) {
-                    return Err(WireError::value("length", 1, len));
-                }
+                refuse_if(!LENGTHS.contains(&len), WireError::value("length", 1, len))?;
                 for (at, field, expected) in [(2, "repeated length", len), (3, "repeated start", SD2)] {
                     if let Some(found) = bytes.get(at).filter(|found| **found != expected) {
                         return Err(differs(field, at, *found, expected));
@@ -139,13 +138,9 @@ fn frame(bytes: &[u8], at: usize, len: usize) -> Result<Parsed, WireError> {
     let whole = at + len + 2;
     let Some(&[fcs, end]) = bytes.get(at + len..whole) else { return Ok(Parsed::Part(whole)) };
     let body = &bytes[at..at + len];
-    if end != ED {
-        return Err(differs("end delimiter", at + len + 1, end, ED));
-    }
+    refuse_if(end != ED, differs("end delimiter", at + len + 1, end, ED))?;
     let sum = checksum(body);
-    if fcs != sum {
-        return Err(differs(CHECKSUM, at + len, fcs, sum));
-    }
+    refuse_if(fcs != sum, differs(CHECKSUM, at + len, fcs, sum))?;
     let control = Control::parse(body[2], at + 2)?;
     let mut rest = HEADER;
     let mut sap = |address: u8, field: &'static str| {

@@ -298,7 +298,7 @@ impl Controller {
         let io = self.ar.as_ref().and_then(|ar| ar.io.as_ref());
         if io.and_then(|io| self.watchdog(io)).is_some_and(|until| until <= now) {
             let after = self.settings.watchdog_time();
-            self.abort(now, WATCHDOG, ProfinetError::Silent { after });
+            self.abort(now, WATCHDOG, ProfinetError::Silent(after));
             return;
         }
         self.poll_alarms(now);
@@ -309,7 +309,7 @@ impl Controller {
             None => {
                 let is_late = matches!(self.phase, Phase::Opening) && ar.step == Step::Ready && ar.ready_until <= now;
                 if is_late {
-                    self.release(now, Some(ProfinetError::NeverReady { after: START }));
+                    self.release(now, Some(ProfinetError::NeverReady(START)));
                 }
             }
         }
@@ -398,7 +398,7 @@ impl Controller {
                 // After a module was plugged, the device needs its parameters again. The controller opens a new
                 // connection, which sends them.
                 if is_plug && !matches!(self.phase, Phase::Releasing(_)) {
-                    self.release(now, Some(ProfinetError::Plugged { slot }));
+                    self.release(now, Some(ProfinetError::Plugged(slot)));
                 }
             }
         }

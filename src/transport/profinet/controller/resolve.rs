@@ -106,7 +106,7 @@ impl Controller {
         match self.settings.ip {
             Some(suite) if has != Some(suite.address) => self.set_address(now, found, suite),
             _ => match has {
-                None => self.handle_loss(now, ProfinetError::NoAddress { station: self.station() }),
+                None => self.handle_loss(now, ProfinetError::NoAddress(self.station())),
                 Some(address) => self.end_search(now, &found, address),
             },
         }

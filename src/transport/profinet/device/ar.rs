@@ -127,7 +127,7 @@ impl<A: Application> Device<A> {
     fn inject_fault(&mut self, now: Now) {
         match self.fault {
             Some(Fault::Diagnosis) => {
-                let first = self.setup.layout.submodules().iter().find(|submodule| submodule.slot > 0).copied();
+                let first = self.setup.layout.0.iter().find(|submodule| submodule.slot > 0).copied();
                 if let Some(Submodule { slot, subslot, module, ident: submodule, .. }) = first {
                     let (priority, detail) = (Priority::Low, Some((CHANNEL, LINE_BREAK.to_vec())));
                     let (api, specifier) = (0, APPEARS);

@@ -133,7 +133,7 @@ fn places(iocr: &Iocr, layout: &Layout) -> Result<(), Status> {
         }
         take(place, 1, 0x1C)?;
     }
-    let count = |direction| layout.submodules().iter().filter(|submodule| submodule.has_data(direction)).count();
+    let count = |direction| layout.0.iter().filter(|submodule| submodule.has_data(direction)).count();
     check(iocr.objects.len() == count(direction), IOCR, 0x15)?;
     check(iocr.consumers.len() == count(direction.opposite()), IOCR, 0x19)
 }

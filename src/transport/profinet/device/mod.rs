@@ -91,8 +91,10 @@ pub enum Event {
 /// A simulated device.
 #[derive(Debug)]
 pub struct Device<A> {
-    setup: Setup,
-    application: A,
+    /// The configuration.
+    pub setup: Setup,
+    /// The application.
+    pub application: A,
     ar: Option<Ar>,
     fault: Option<Fault>,
     /// The last answers. The device answers a repeated call with the same bytes.
@@ -125,21 +127,6 @@ impl<A: Application> Device<A> {
             image,
             actions: VecDeque::new(),
         }
-    }
-
-    /// The configuration.
-    pub const fn setup(&self) -> &Setup {
-        &self.setup
-    }
-
-    /// The application.
-    pub const fn application(&self) -> &A {
-        &self.application
-    }
-
-    /// The application.
-    pub const fn application_mut(&mut self) -> &mut A {
-        &mut self.application
     }
 
     /// Activates a fault; `None` deactivates the active fault.

@@ -37,7 +37,7 @@ fn alarm(priority: Priority, kind: u16) -> Notification {
 }
 
 fn noted(world: &World) -> usize {
-    world.device.application().events.iter().filter(|event| matches!(event, Event::AlarmNoted(_))).count()
+    world.device.application.events.iter().filter(|event| matches!(event, Event::AlarmNoted(_))).count()
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn a_plugged_module_brings_a_new_connection() {
     let mut world = World::open(setup(), settings(), "");
     world.device.raise(world.now, &alarm(Priority::Low, 4));
     world.until(1000 * MS, |world| world.view().state == State::Lost);
-    assert_eq!(world.view().last_error, Some(ProfinetError::Plugged { slot: 1 }));
+    assert_eq!(world.view().last_error, Some(ProfinetError::Plugged(1)));
     world.until(10 * MS, |world| noted(world) == 1);
     world.until_open();
     assert_eq!(world.view().generation, 2);
@@ -89,17 +89,17 @@ fn reports_a_silent_device_as_lost() {
     world.device.set_fault(Some(Fault::Stall));
     let from = world.now;
     world.until(1000 * MS, |world| world.view().state == State::Lost);
-    assert_eq!(world.view().last_error, Some(ProfinetError::Silent { after: 320 * MS }));
+    assert_eq!(world.view().last_error, Some(ProfinetError::Silent(320 * MS)));
     assert!(world.now.saturating_sub(from) <= 321 * MS);
     world.run(10 * MS);
-    let ended = world.device.application().events.last().cloned();
+    let ended = world.device.application.events.last().cloned();
     assert_eq!(ended, Some(Event::Ended(Some(Status::abort(5)))), "the device was told");
     assert!(matches!(world.controller.set_image(1, &image(6)), Err(ProfinetError::Outdated)));
     world.device.set_fault(None);
     world.until_open();
     assert_eq!(world.view().generation, 2);
     assert!(matches!(world.controller.set_image(1, &image(6)), Err(ProfinetError::Outdated)));
-    let history = &world.device.application().history;
+    let history = &world.device.application.history;
     assert_eq!(history.last(), Some(&Some(after_five())));
     assert_eq!(history.iter().filter(|shown| **shown == Some(image(5))).count(), 1, "it is not shown again");
 }
@@ -119,7 +119,7 @@ fn bad_data_is_a_loss_and_the_link_restarts_at_rest() {
         world.until(100 * MS, |world| world.view().state == State::Lost);
         assert_eq!((world.view().last_error, world.view().input), (Some(ProfinetError::Unusable(why)), None));
         world.run(100 * MS);
-        assert_eq!(world.device.application().image, Some(after_five()), "{fault:?}");
+        assert_eq!(world.device.application.image, Some(after_five()), "{fault:?}");
         world.device.set_fault(None);
         world.until_open();
         assert_eq!((world.view().generation, world.calls(operation::CONNECT).len()), (2, 1), "{fault:?}");
@@ -135,10 +135,7 @@ fn ignores_old_and_repeated_frames() {
     assert!(view.statistics.stale >= 60 && view.generation == 1, "{view:?}");
     world.device.set_fault(Some(Fault::Stale));
     world.until(1000 * MS, |world| world.view().state == State::Lost);
-    assert!(
-        matches!(world.view().last_error, Some(ProfinetError::Silent { .. })),
-        "a count that stands still is silence"
-    );
+    assert!(matches!(world.view().last_error, Some(ProfinetError::Silent(_))), "a count that stands still is silence");
 }
 
 #[test]
@@ -151,7 +148,7 @@ fn a_device_that_restarts_is_connected_again() {
     world.until_open();
     let view = world.view();
     assert_eq!((view.generation, view.statistics.losses), (2, 1));
-    assert_eq!(world.device.application().image, Some(after_five()));
+    assert_eq!(world.device.application.image, Some(after_five()));
 }
 
 #[test]
@@ -160,7 +157,7 @@ fn unplugged_cable_ends_both_sides() {
     world.cable = false;
     world.run(400 * MS);
     assert_eq!(world.view().state, State::Lost);
-    assert_eq!(world.device.application().events.last(), Some(&Event::Ended(Some(Status::abort(5)))));
+    assert_eq!(world.device.application.events.last(), Some(&Event::Ended(Some(Status::abort(5)))));
     // This time is much longer than many attempts to connect. The controller must not give up.
     world.run(120_000 * MS);
     assert_eq!(world.view().state, State::Lost);
@@ -210,7 +207,7 @@ fn bad_network_yields_images_or_an_error() {
                 assert_eq!(shown.as_deref(), Some(&native_order(&wanted)[..]), "{spec}, seed {seed}");
             }
             let known = [Some(wanted.clone()), Some(resting()), None];
-            let history = &world.device.application().history;
+            let history = &world.device.application.history;
             assert!(history.iter().all(|shown| known.contains(shown)), "{spec}, seed {seed}");
             assert!(history.iter().filter(|shown| **shown == known[0]).count() <= 1, "{spec}, seed {seed}: twice");
             let known = [native_order(&wanted), native_order(&resting()), vec![0; 48]];

@@ -50,7 +50,7 @@ fn first_frame_is_the_resting_image() {
     let first = Cyclic::parse(&sent[0].1, 53).unwrap();
     assert_eq!((&first.data[..48], first.status), (&resting()[..], RUNNING));
     assert!(first.data[48..].iter().all(|status| *status == 0x80));
-    assert_eq!(world.device.application().history, [Some(resting())], "the device never saw anything else");
+    assert_eq!(world.device.application.history, [Some(resting())], "the device never saw anything else");
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn parameters_are_written_before_the_start() {
         let world = World::open(setup(), Settings { parameters: parameters.clone(), ..settings() }, "");
         let written: Vec<_> = world
             .device
-            .application()
+            .application
             .events
             .iter()
             .filter_map(|event| match event {
@@ -183,16 +183,16 @@ fn reports_duplicate_and_missing_names() {
 fn sets_an_address_only_if_requested() {
     let bare = super::super::device::Setup { ip: None, ..setup() };
     let mut world = World::new(bare.clone(), settings(), "");
-    assert!(matches!(world.run_to_deadline().last_error, Some(ProfinetError::NoAddress { .. })));
-    assert!(world.device.application().events.is_empty());
+    assert!(matches!(world.run_to_deadline().last_error, Some(ProfinetError::NoAddress(_))));
+    assert!(world.device.application.events.is_empty());
 
     let given = Settings { ip: Some(suite([192, 168, 78, 2])), ..settings() };
     let world = World::open(bare.clone(), given.clone(), "");
-    let events = &world.device.application().events;
+    let events = &world.device.application.events;
     assert_eq!(events[0], Event::Addressed(suite([192, 168, 78, 2]), false), "until it is switched off");
 
     let world = World::open(setup(), given.clone(), "");
-    assert!(matches!(world.device.application().events[0], Event::Connected(_)), "it has it already");
+    assert!(matches!(world.device.application.events[0], Event::Connected(_)), "it has it already");
 
     let mut world = World::new(bare.clone(), given.clone(), "");
     world.device.set_fault(Some(Fault::KeepsAddress));
@@ -201,7 +201,7 @@ fn sets_an_address_only_if_requested() {
     let elsewhere = Settings { ip: Some(suite([10, 0, 0, 2])), ..settings() };
     let mut world = World::new(bare, elsewhere, "");
     assert!(matches!(world.run_to_deadline().last_error, Some(ProfinetError::OtherNetwork { .. })));
-    assert!(world.device.application().events.is_empty());
+    assert!(world.device.application.events.is_empty());
 
     let far = super::super::device::Setup { ip: Some(suite([10, 0, 0, 2])), ..setup() };
     let view = World::new(far, settings(), "").run_to_deadline();
@@ -219,9 +219,9 @@ fn sends_frames_until_the_release_is_complete() {
     let before = outputs(&world).len();
     let view = world.run_to_deadline();
     assert_eq!(view.last_error, None);
-    let history = &world.device.application().history;
+    let history = &world.device.application.history;
     assert_eq!(history[..], [Some(resting()), Some(image(9)), None], "no input goes on while the connection closes");
-    assert!(matches!(world.device.application().events.last(), Some(Event::Ended(None))));
+    assert!(matches!(world.device.application.events.last(), Some(Event::Ended(None))));
     assert_eq!(world.calls(operation::RELEASE).len(), 1);
     world.run(1000 * MS);
     let after = outputs(&world);
@@ -243,7 +243,7 @@ fn reports_an_unanswered_release() {
 fn every_device_fault_has_an_error() {
     type Check = fn(&ProfinetError) -> bool;
     let cases: [(Fault, Check); 10] = [
-        (Fault::NeverReady, |why| matches!(why, ProfinetError::NeverReady { .. })),
+        (Fault::NeverReady, |why| matches!(why, ProfinetError::NeverReady(_))),
         (Fault::WrongModule, |why| {
             let mismatch = ModuleMismatch { slot: 1, subslot: None, found: Some(0x40), expected: Some(0x101) };
             *why == ProfinetError::Modules(vec![mismatch])
@@ -298,7 +298,7 @@ fn swaps_bytes_only_on_the_wire() {
     let mut world = World::open(setup(), Settings { swapped: 32, ..settings() }, "");
     world.controller.set_image(1, &image(1)).unwrap();
     world.until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *native_order(&image(1))));
-    let there = world.device.application().image.clone().unwrap();
+    let there = world.device.application.image.clone().unwrap();
     assert_eq!((&there[..4], &there[30..]), (&[2, 1, 4, 3][..], &[&[32, 31][..], &image(1)[32..]].concat()[..]));
 }
 

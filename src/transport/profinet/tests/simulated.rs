@@ -93,7 +93,7 @@ fn image_arrives_in_spite_of_network_faults() {
 #[test]
 fn silent_device_takes_no_real_time() {
     let error = network(Some(Fault::NeverReady)).open(settings()).unwrap_err();
-    assert!(matches!(error, ProfinetError::NeverReady { .. }), "{error}");
+    assert!(matches!(error, ProfinetError::NeverReady(_)), "{error}");
     let one = network(None);
     let name = one.interface().name;
     drop(one);

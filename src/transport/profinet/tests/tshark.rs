@@ -61,7 +61,7 @@ fn life() -> Vec<(std::time::Duration, Vec<u8>)> {
     world.until_open();
     world.controller.close(world.now);
     world.run_to_deadline();
-    assert!(world.device.application().events.contains(&Event::Ended(None)));
+    assert!(world.device.application.events.contains(&Event::Ended(None)));
     let mut record = world.record.take().unwrap();
     // A second device follows. Its answer to Connect reports a different module.
     let mut world = World::new(setup(), super::world::settings(), "");

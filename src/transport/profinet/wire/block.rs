@@ -4,10 +4,7 @@ use super::{Reader, Uuid, WireError, Writer, count16};
 
 /// Block type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct BlockType(
-    /// Type number.
-    pub u16,
-);
+pub struct BlockType(pub u16);
 
 impl BlockType {
     /// High-priority alarm.

@@ -327,10 +327,7 @@ impl IpSuite {
 
 /// Origin of an IP address, as the block info codes it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct IpOrigin(
-    /// Block info.
-    pub u16,
-);
+pub struct IpOrigin(pub u16);
 
 impl IpOrigin {
     /// Whether another station has the same address.

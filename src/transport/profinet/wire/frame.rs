@@ -109,6 +109,6 @@ mod tests {
     #[test]
     fn other_frames_are_named() {
         let error = Frame::parse(&hex("020202020202 040404040404 0800 4500")).unwrap_err();
-        assert_eq!((error.field, error.offset, error.problem), ("type", 12, Problem::Value { found: 0x800 }));
+        assert_eq!((error.field, error.offset, error.problem), ("type", 12, Problem::Value(0x800)));
     }
 }

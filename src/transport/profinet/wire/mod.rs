@@ -25,10 +25,7 @@ mod tests;
 
 /// MAC address.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
-pub struct Mac(
-    /// Bytes in network order.
-    pub [u8; 6],
-);
+pub struct Mac(pub [u8; 6]);
 
 impl Mac {
     /// Multicast address of DCP Identify requests.
@@ -74,10 +71,7 @@ impl FromStr for Mac {
 
 /// UUID, in the byte order that blocks use.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct Uuid(
-    /// The bytes.
-    pub [u8; 16],
-);
+pub struct Uuid(pub [u8; 16]);
 
 impl Uuid {
     /// The nil UUID.

@@ -9,8 +9,6 @@ pub mod index {
     pub const IM0: u16 = 0xAFF0;
     /// Modules that are really plugged into the device.
     pub const REAL_IDENTIFICATION: u16 = 0xF000;
-    /// Log of ended connections.
-    pub const LOGBOOK: u16 = 0xF830;
     /// Several records in one Write.
     pub const MULTIPLE_WRITE: u16 = 0xE040;
 }

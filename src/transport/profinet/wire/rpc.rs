@@ -1,6 +1,7 @@
 //! Codec for connectionless RPC (DCE 1.1, version 4) on UDP port 34964. It includes the NDR header before the blocks.
 
 use super::{ByteOrder, Reader, Uuid, WireError, Writer, count16, count32};
+use crate::refuse_if;
 
 /// UDP port of both controller and device.
 pub const PORT: u16 = 34964;
@@ -15,10 +16,7 @@ pub const MAX_ANSWER_LEN: usize = 65_536;
 
 /// Packet type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Kind(
-    /// Code of the packet type.
-    pub u8,
-);
+pub struct Kind(pub u8);
 
 impl Kind {
     /// A call.
@@ -125,9 +123,7 @@ impl<'a> Datagram<'a> {
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Reader::big(bytes);
         let version = reader.u8("RPC version")?;
-        if version != 4 {
-            return Err(reader.wrong("RPC version", 1, version));
-        }
+        refuse_if(version != 4, reader.wrong("RPC version", 1, version))?;
         let kind = Kind(reader.u8("packet type")? & 0x1F);
         let flags = reader.u8("flags")?;
         reader.u8("flags 2")?;
@@ -251,9 +247,7 @@ fn read_ndr(body: &[u8], order: ByteOrder) -> Result<(u32, &[u8]), WireError> {
     let length = reader.u32("ArgsLength")?;
     reader.u32("MaximumCount")?;
     let offset = reader.u32("Offset")?;
-    if offset != 0 {
-        return Err(reader.wrong("Offset", 4, offset));
-    }
+    refuse_if(offset != 0, reader.wrong("Offset", 4, offset))?;
     reader.u32("ActualCount")?;
     let blocks = reader.take(usize::try_from(length).unwrap_or(usize::MAX), "blocks")?;
     Ok((first, blocks))

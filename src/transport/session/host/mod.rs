@@ -342,15 +342,17 @@ impl Host {
             (self.log)(&format!("refused client {}: the robot is read-only ({})", by.pid, by.command));
         }
         let shown = self.link.images().map(|images| images.shown.clone());
+        self.send_control(id, Control::Denied { shown });
+    }
+
+    fn send_control(&self, id: u64, control: Control) {
         if let Some(client) = self.clients.get(&id) {
-            client.send_control(Control::Denied { shown });
+            client.send_control(control);
         }
     }
 
     fn send_error(&self, id: u64, error: &io::Error) {
-        if let Some(client) = self.clients.get(&id) {
-            client.send_control(Control::Broken(Broken::from(error)));
-        }
+        self.send_control(id, Control::Broken(Broken::from(error)));
     }
 
     fn other_clients(&self, id: u64) -> impl Iterator<Item = &Client> {
@@ -390,15 +392,12 @@ impl Host {
 
     fn enqueue(&mut self, id: u64, take: u32, channel: u8) {
         if self.link.is_parallel(channel) {
-            if let Some(client) = self.clients.get(&id) {
-                client.send_control(Control::Taken(take));
-            }
-            return;
+            return self.send_control(id, Control::Taken(take));
         }
         let holder = self.line.and_then(|holder| self.clients.get(&holder));
         let holder = holder.map(|holder| holder.peer(holder.line_since)).or_else(|| self.direct.holder());
-        if let (Some(holder), Some(client)) = (holder, self.clients.get(&id)) {
-            client.send_control(Control::Queued(holder));
+        if let Some(holder) = holder {
+            self.send_control(id, Control::Queued(holder));
         }
         self.queue.retain(|(other, _)| *other != id);
         if self.is_stop(id) {
@@ -479,9 +478,7 @@ impl Host {
             self.motion = Some(id);
             self.update_guard();
         }
-        if let Some(client) = self.clients.get(&id) {
-            client.send_control(answer);
-        }
+        self.send_control(id, answer);
     }
 
     /// Updates the guardian, which stops the robot if this process ends. An image link needs no guardian, because the
@@ -582,9 +579,7 @@ impl Host {
 
     fn send_status(&mut self, id: u64) {
         let status = Control::Status(Box::new(self.status()));
-        if let Some(client) = self.clients.get(&id) {
-            client.send_control(status);
-        }
+        self.send_control(id, status);
     }
 
     fn answer_close(&mut self, id: u64, force: bool) -> bool {
@@ -606,9 +601,7 @@ impl Host {
         match event {
             LinkEvent::Sent => {
                 for id in std::mem::take(&mut self.awaiting_sent) {
-                    if let Some(client) = self.clients.get(&id) {
-                        client.send_control(Control::Sent);
-                    }
+                    self.send_control(id, Control::Sent);
                 }
             }
             LinkEvent::Image(image) => self.broadcast(|| Frame::Image(image.to_vec())),

@@ -11,6 +11,7 @@ use futures_util::future::select_all;
 use tokio::sync::Mutex;
 use tokio::time::{Instant, sleep_until, timeout_at};
 
+use crate::BACKOFF;
 use crate::image::{Event, ImageLink};
 use crate::session::wire::{self, Change};
 use crate::sim::{InProcess, Peer};
@@ -60,14 +61,6 @@ pub enum LinkEvent {
 const NO_DEADLINE: Duration = Duration::from_secs(3600);
 /// Size of the receive buffer: larger than any frame of a controller, so that oversized datagrams are detected.
 const BUFFER: usize = 4096;
-/// Pauses before attempts to reopen a stream. The last pause repeats.
-const BACKOFF: [Duration; 5] = [
-    Duration::from_millis(250),
-    Duration::from_millis(500),
-    Duration::from_secs(1),
-    Duration::from_secs(2),
-    Duration::from_secs(5),
-];
 
 impl SharedLink {
     /// Waits for the next event. The future is cancel safe.

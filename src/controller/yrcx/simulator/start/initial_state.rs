@@ -4,10 +4,8 @@ use std::collections::BTreeMap;
 
 use toml::Spanned;
 
-use super::{
-    AlarmEntry, ArmEntry, Entries, KindEntry, Number, PalletEntry, PointEntry, RobotEntry, ServoEntry, StateEntry,
-};
-use crate::simulator::refuse_if;
+use super::{AlarmEntry, Entries, KindEntry, Number, PalletEntry, PointEntry, RobotEntry};
+use crate::refuse_if;
 use crate::simulator::start::{Source, numbered};
 use crate::yrcx::alarm::Alarm;
 use crate::yrcx::simulator::alarms::{AlarmSource, Entry};
@@ -17,7 +15,7 @@ use crate::yrcx::simulator::memory::{HANDS, Hand, POINTS, Pallet, Point, PointUn
 use crate::yrcx::simulator::program::{Program, assigned};
 use crate::yrcx::simulator::request::ROBOTS;
 use crate::yrcx::simulator::robot::{AXES, Axis, FULL_TORQUE, Method, Motor, Robot, Servo};
-use crate::yrcx::simulator::task::{State, TASKS, Task};
+use crate::yrcx::simulator::task::{TASKS, Task};
 use crate::yrcx::simulator::world::World;
 use crate::yrcx::table::parameter::PARAMETERS as KNOWN_PARAMETERS;
 use crate::yrcx::table::{Charset, Field};
@@ -82,7 +80,7 @@ fn robot(entry: &RobotEntry, power: bool) -> Result<Robot, String> {
         inching: entry.inching,
         shift: entry.shift,
         hand: entry.hand,
-        arm: arm(entry.arm),
+        arm: entry.arm,
         motion: None,
         ended: Vec::new(),
         pushing: None,
@@ -98,12 +96,7 @@ fn axis(entry: &RobotEntry, number: usize, power: bool) -> Result<Axis, String> 
     if limits[0] >= limits[1] {
         return Err(format!("the limits of axis {} are in the wrong order", number + 1));
     }
-    let servo = match entry.servos.get(number).copied().unwrap_or(ServoEntry::Servo) {
-        _ if !power => Servo::Brake,
-        ServoEntry::Servo => Servo::On,
-        ServoEntry::Brake => Servo::Brake,
-        ServoEntry::Free => Servo::Free,
-    };
+    let servo = entry.servos.get(number).copied().unwrap_or(Servo::On);
     let mut parameters: BTreeMap<u16, i32> = PARAMETERS.into();
     for (name, values) in &entry.parameters {
         let known = KNOWN_PARAMETERS.iter().find(|known| known.name == *name && known.per_axis);
@@ -122,20 +115,13 @@ fn axis(entry: &RobotEntry, number: usize, power: bool) -> Result<Axis, String> 
         limits: (limits[0].into(), limits[1].into()),
         speed: entry.speeds.get(number).copied().unwrap_or(usual.speed),
         pulses: entry.position.get(number).copied().unwrap_or(0).into(),
-        servo,
+        servo: if power { servo } else { Servo::Brake },
         origin: entry.origin.get(number).copied().unwrap_or(true),
         torque_limit: FULL_TORQUE,
         load: entry.load.get(number).copied().unwrap_or(0).clamp(-FULL_TORQUE, FULL_TORQUE),
         obstacle: entry.obstacles.get(&(number + 1).to_string()).map(|place| f64::from(*place)),
         parameters,
     })
-}
-
-fn arm(entry: ArmEntry) -> Arm {
-    match entry {
-        ArmEntry::Right => Arm::Right,
-        ArmEntry::Left => Arm::Left,
-    }
 }
 
 /// Adds the entries to the existing content, except the robots.
@@ -216,11 +202,7 @@ fn programs(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<
         }
         let mut new = Task::new(task.number, task.program, task.priority);
         new.set_line(task.line - 1);
-        new.state = match task.state {
-            StateEntry::Stop => State::Stopped,
-            StateEntry::Run => State::Running,
-            StateEntry::Suspend => State::Suspended,
-        };
+        new.state = task.state;
         world.tasks.retain(|other| other.number != task.number && other.program != task.program);
         world.tasks.push(new);
         Ok(())
@@ -239,7 +221,7 @@ pub(super) fn check(world: &World, entries: &Entries, source: Source<'_>) -> Res
 }
 
 fn point(entry: &PointEntry) -> Result<Point, String> {
-    let hand_system = entry.hand.map_or(0, |side| arm(side).hand_system());
+    let hand_system = entry.hand.map_or(0, Arm::hand_system);
     match (entry.pulse, entry.mm) {
         (Some(values), None) => Ok(Point { unit: PointUnit::Pulse, hand_system: 0, values }),
         (None, Some(values)) => {
