@@ -5,25 +5,19 @@
 
 use std::cell::RefCell;
 use std::ffi::OsString;
-use std::path::Path;
 use std::rc::Rc;
-use std::sync::Arc;
-
-use anyhow::Context as _;
-use serde_json::Value;
 
 use super::parser::Parser;
 use super::prepare::{Invocation, PreparedCommand};
 use super::{line_words, name_lookup};
 use crate::cli::Words;
 use crate::command::fleet::session::host;
-use armctl_files as files;
 use armctl_frame::batch::Batch;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::flags::Globals;
 use armctl_frame::interrupt::catch_interrupts;
-use armctl_frame::output::{Format, Screen};
-use armctl_frame::run::{RunError, begin_trace};
+use armctl_frame::output::Format;
+use armctl_frame::prelude::*;
+use armctl_frame::run::begin_trace;
 use armctl_frame::script_line::{Line, Origin};
 use armctl_frame::session_manager::SessionManager;
 use armctl_frame::settings::rehearsal::Rehearsals;

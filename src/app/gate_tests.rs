@@ -1,6 +1,5 @@
 //! Comparison of each line in `command/example_lines` with the decisions of the gate.
 
-use std::collections::BTreeSet;
 use std::ffi::OsString;
 
 use clap::CommandFactory as _;
@@ -20,7 +19,6 @@ use armctl_frame::output::redraw::Redraw;
 use armctl_frame::output::{ColorChoice, Format};
 use armctl_frame::prelude::*;
 use armctl_frame::settings::inventory::Inventory;
-use armctl_frame::settings::target::Family;
 use armctl_frame::settings::{Selection, Sources};
 
 const STOPS: [&str; 7] =

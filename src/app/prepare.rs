@@ -1,7 +1,5 @@
 //! Preparation of a command line, before anything is sent.
 
-use std::path::{Path, PathBuf};
-
 use clap::{CommandFactory as _, ValueEnum as _};
 
 use super::flags;
@@ -14,15 +12,14 @@ use crate::command::fleet::teach::Teach;
 use armctl_frame::batch::{Batch, Rehearse};
 use armctl_frame::condition::Condition;
 use armctl_frame::face::family_command::{FamilyLine, ParsedCommand};
-use armctl_frame::failure::Failure;
 use armctl_frame::flags::Globals;
 use armctl_frame::gate::Gate;
 use armctl_frame::output::Format;
 use armctl_frame::output::jq::Filter;
 use armctl_frame::output::redraw::Redraw;
-use armctl_frame::run::{Repeat, Run, RunError};
+use armctl_frame::prelude::*;
+use armctl_frame::run::Repeat;
 use armctl_frame::script_line::Line;
-use armctl_frame::settings::duration;
 use armctl_frame::settings::inventory::{Inventory, Location, Options};
 use armctl_frame::settings::target::TargetArgument;
 use armctl_frame::settings::{Selection, Sessions, Sources};

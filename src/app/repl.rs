@@ -11,9 +11,7 @@ mod prompt;
 mod terminal;
 
 use std::io::IsTerminal as _;
-use std::sync::Arc;
 
-use anyhow::Context as _;
 use tokio::io::{AsyncBufRead, AsyncBufReadExt as _, AsyncReadExt as _, BufReader};
 
 use self::assistant::Assistant;
@@ -36,7 +34,6 @@ use armctl_frame::prelude::*;
 use armctl_frame::run::begin_trace;
 use armctl_frame::script_line::Line;
 use armctl_frame::session_manager::SessionManager;
-use armctl_frame::settings::target::Family;
 
 /// Whether stdin is a terminal.
 pub fn can_type() -> bool {
@@ -119,7 +116,7 @@ impl Repl {
         if let Some(robot) = &self.robot
             && !self.globals.dry_run
             && !matches!(
-                families::of(robot.family).driver().connection_effect(robot, ConnectMode::Control),
+                (families::driver(robot).connection_effect)(robot, ConnectMode::Control),
                 ConnectionEffect::Stops(_)
             )
         {

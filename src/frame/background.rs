@@ -1,21 +1,13 @@
 //! Sessions in a background process.
 
 use std::ffi::OsString;
-use std::path::Path;
 
-use anyhow::Context as _;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use tokio::task::spawn_blocking;
 
 use super::interrupt::interruptible;
-use super::report::Report;
 use super::session_client::{folder_failure, session_key};
-use crate::failure::Failure;
-use crate::output::Screen;
-use crate::output::view::View;
-use crate::settings::Robot;
-use armctl_files as files;
+use crate::prelude::basics::*;
 use armctl_transport::session::location::SessionFolder;
 use armctl_transport::session::{detach, process, start_file, terminate};
 

@@ -1,8 +1,5 @@
 //! Dry run: frames are recorded instead of sent.
 
-use serde_json::Value;
-
-use super::report::Report;
 use crate::prelude::basics::*;
 pub use armctl_client::{Plan, Reason};
 
@@ -151,7 +148,6 @@ impl DryRun {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
 

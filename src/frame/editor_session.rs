@@ -1,15 +1,11 @@
 //! Text that a user edits between a read from a controller and the write back to it. The text is always in a file. The
 //! file is kept until the text is on the controller.
 
-use std::path::{Path, PathBuf};
-
-use anyhow::Context as _;
-
 use super::interrupt::catch_interrupts;
 use super::local_names::state_folder;
-use crate::failure::{Failure, plain};
-use crate::output::{Screen, editor};
-use armctl_files as files;
+use crate::failure::plain;
+use crate::output::editor;
+use crate::prelude::basics::*;
 
 /// Environment variables with the name of the editor, in the order of priority.
 const VARIABLES: [&str; 2] = ["VISUAL", "EDITOR"];

@@ -149,7 +149,6 @@ pub fn all_failed<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemErr
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
 

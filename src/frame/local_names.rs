@@ -4,16 +4,14 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::io::{BufWriter, ErrorKind, Write};
-use std::path::{Component, Path, PathBuf};
+use std::path::Component;
 
-use anyhow::Context as _;
 use tempfile::NamedTempFile;
 
-use crate::failure::Failure;
 use crate::output::escape;
+use crate::prelude::basics::*;
 pub use crate::settings::state_folder;
 use armctl_controller::text::{EncodeError, Encoding, unhex};
-use armctl_files as files;
 pub use armctl_files::folder_of;
 
 /// Maximum length of a name in common file systems.
@@ -256,7 +254,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::failure::Kind;
 
     const SJIS: Encoding = Encoding::ShiftJis;
 

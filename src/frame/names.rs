@@ -12,14 +12,10 @@ use std::sync::{Mutex, PoisonError};
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use super::report::Report;
 use super::value_kind::Candidate;
-use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
 use crate::settings::names::{KeptFile, RobotNames, grammar};
-use crate::settings::target::Family;
 use armctl_controller::names::{Grammar, Kind, Name, NameMatch, Names, unusable};
-use armctl_controller::similar_word::nearest;
 
 /// What the parser does with a word that is not an address.
 #[derive(Debug, Clone, Default)]

@@ -2,9 +2,8 @@
 
 use schemars::Schema;
 use schemars::generate::SchemaSettings;
-use serde_json::Value;
 
-use crate::output::csv::{RowsOf, Sheet};
+use crate::output::csv::Sheet;
 use crate::prelude::basics::*;
 
 /// Report of a command.

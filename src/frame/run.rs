@@ -5,10 +5,6 @@ mod print;
 mod rounds;
 mod several;
 
-use std::path::{Path, PathBuf};
-use std::time::Duration;
-
-use anyhow::Context as _;
 use futures_util::StreamExt as _;
 use futures_util::stream;
 
@@ -428,7 +424,7 @@ impl Run {
         let robot = &match command.driver().filter(|_| goes_on) {
             Some(driver) => match open_shared_session(driver, robot).await {
                 // In a command for all families, a robot that does not answer also has a line in the table.
-                Err(failure) if failure.kind == Kind::NoAnswer && driver.family().is_none() => robot.clone(),
+                Err(failure) if failure.kind == Kind::NoAnswer && driver.family.is_none() => robot.clone(),
                 robot => robot?,
             },
             None => robot.clone(),
@@ -508,7 +504,7 @@ impl Run {
             return Ok(None);
         };
         let stops = command.connection_effect(robot) == ConnectionEffect::Harmless && !is_held_by_other_process(robot);
-        Guardian::start(robot, driver.stop(), stops).map(Some)
+        Guardian::start(robot, driver.stop, stops).map(Some)
     }
 
     /// Runs the command once. Ctrl-C during a motion first stops the robot.

@@ -1,12 +1,7 @@
 //! A line of a REPL or batch that contains a command.
 
 use std::cell::RefCell;
-use std::fmt;
-use std::path::Path;
 use std::rc::Rc;
-use std::sync::Arc;
-
-use serde_json::Value;
 
 use super::connection::{Access, ConnectMode};
 use super::session_manager::{HeldBy, SessionManager};

@@ -1,14 +1,11 @@
 //! Client side of sessions: finds the session that has the link of a robot, and connects to it.
 
-use std::path::Path;
-use std::time::Duration;
-
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 use tokio::time::timeout;
 
 use crate::prelude::basics::*;
-use crate::settings::target::{self, Address, Family, Target};
+use crate::settings::target::{self, Address, Target};
 use crate::settings::{Sessions, Sources};
 use crate::{Access, Driver};
 use armctl_transport::session::client::{self, AttachError, AttachResult, Attached, SessionBusy};
@@ -213,11 +210,11 @@ fn sessions(place: &SessionFolder, family: Family) -> Vec<(SessionPath, Address)
 ///
 /// # Errors
 /// If the robot does not answer, so that its identity is unknown.
-pub fn identify(sources: &Sources, driver: &dyn Driver, robot: &mut Robot, changes: bool) -> Result<(), Failure> {
+pub fn identify(sources: &Sources, driver: &Driver, robot: &mut Robot, changes: bool) -> Result<(), Failure> {
     let own = robot.target.value.address();
     let is_bound = changes && sources.read_only(robot.family).any(|(address, _)| own.may_match(&address));
     if is_bound || may_be_held(robot, &own) {
-        robot.aliases = driver.addresses(robot)?;
+        robot.aliases = (driver.addresses)(robot)?;
         sources.apply_read_only(robot);
     }
     Ok(())

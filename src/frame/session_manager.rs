@@ -2,18 +2,15 @@
 //! (`fleet/session/host.rs`).
 
 use std::collections::HashMap;
-use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use tokio::sync::{mpsc, oneshot};
 
 use super::connection::Access;
 use super::interrupt::interruptible;
 use super::session_client::own_key;
-use crate::failure::Failure;
-use crate::output::Screen;
-use crate::settings::Robot;
+use crate::prelude::basics::*;
 use armctl_transport::session::direct::HostHandle;
 
 /// Handle of the manager that keeps links open between the lines of this process. The manager has its own thread, so

@@ -1,7 +1,5 @@
 //! Table files for spreadsheets: the path, and the content that an update keeps.
 
-use std::path::PathBuf;
-
 use super::local_names::Target;
 use super::text_files;
 use crate::prelude::basics::*;

@@ -1,14 +1,9 @@
 //! Report of `teach` for all families, and positions from the output of other commands.
 
-use std::path::Path;
-
-use anyhow::Context as _;
 use serde_json::{Map, Value as Json};
 
-use super::report::Report;
 use crate::prelude::basics::*;
 use crate::robot::position::Position;
-use armctl_files as files;
 
 /// Result of teaching a point: the old and new content of the point, and the position of the robot.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -121,7 +116,6 @@ fn printed_texts(path: &Path) -> Result<Json, Failure> {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
 

@@ -1,12 +1,10 @@
 //! Input and output files that the user names.
 
 use std::io::ErrorKind;
-use std::path::Path;
 
 use super::local_names::Target;
-use crate::failure::Failure;
+use crate::prelude::basics::*;
 use armctl_controller::findings::Finding;
-use armctl_files as files;
 
 /// Maximum file size. It is larger than all data of a controller.
 const SIZE_LIMIT: u64 = 16 << 20;

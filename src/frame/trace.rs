@@ -2,15 +2,12 @@
 
 use std::io;
 use std::net::SocketAddr;
-use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
-
-use anyhow::Context as _;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::connection::Access;
-use crate::failure::{Failure, plain};
-use crate::output::Screen;
+use crate::failure::plain;
+use crate::prelude::basics::*;
 use armctl_controller::simulator::recording::AnswerLog;
 use armctl_controller::text::hex;
 use armctl_transport::tap::{CaptureWriter, Direction};

@@ -1,12 +1,9 @@
 //! Commands `toyo alarm list|history|watch|reset|point`.
 
 use super::explain::alarm_from_code;
-use super::link::Link;
-use super::link::Toyo;
 use super::wait::{status_page, wait_for_status};
 use crate::prelude::*;
 use armctl_controller::toyo::errors;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::face::shared_commands::CommonReport;
 use armctl_frame::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, ExtraColumns, Nothing, Row, Source};
 use armctl_frame::settings::alarms;

@@ -1,7 +1,5 @@
 //! `toyo bus`: the CC-Link board.
 
-use super::link::Toyo;
-use super::link::wrong;
 use super::number_arguments::saturated_byte;
 use crate::prelude::*;
 

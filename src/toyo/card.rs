@@ -1,9 +1,7 @@
 //! `toyo card read|write`: the memory card.
 
-use super::link::Toyo;
 use super::wait::{AcceptedWork, Work};
 use crate::prelude::*;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::wait_arguments::MotionEnd;
 
 commands! {

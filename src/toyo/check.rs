@@ -1,8 +1,6 @@
 //! Checks of `armctl robots check` that are specific to the controller.
 
 use super::info;
-use super::link::Link;
-use super::link::Toyo;
 use super::overview::left_over;
 use crate::prelude::*;
 use armctl_controller::toyo::errors;

@@ -1,9 +1,6 @@
 //! Commands that send one block: servo, mode, reset, stop.
 
-use clap::ValueEnum;
-
 use super::link::MotionKind;
-use super::link::Toyo;
 use super::position::UNIT;
 use super::wait::wait_for_status;
 use crate::prelude::*;

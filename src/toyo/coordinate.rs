@@ -1,8 +1,6 @@
 //! `toyo coordinate set`: sends coordinates to a program that waits for them.
 
 use super::field_values::{Changes, assignment, json};
-use super::link::Toyo;
-use super::link::wrong;
 use super::point::table as point_table;
 use super::position::Coordinates;
 use crate::prelude::*;

@@ -2,9 +2,7 @@
 
 use super::eeprom_tables::Listed;
 use super::item_reads::read_each;
-use super::link::{Link, Toyo, wrong};
 use super::number_arguments::{Numbers, number, read_back, read_back_mismatch};
-use crate::complete;
 use crate::prelude::*;
 use armctl_controller::names::Kind;
 use armctl_controller::toyo::field;

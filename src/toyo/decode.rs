@@ -203,7 +203,6 @@ impl Report for DecodedLines {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_frame::failure::Kind;
 
     fn senders(lines: &[&str]) -> Vec<&'static str> {
         let lines = lines.iter().map(ToString::to_string).collect();

@@ -3,8 +3,7 @@
 //! For this reason, a value that is already equal is not written. Each write is read back, because a worn cell answers
 //! `@OK` and keeps its old value (ambiguity R29).
 
-use super::link::Link;
-use super::refusal;
+use super::number_arguments::read_back;
 use crate::prelude::*;
 use armctl_controller::toyo::layout::LayoutProblem;
 use armctl_controller::toyo::table::{Command, Op};
@@ -84,15 +83,7 @@ impl Link {
         if let Some(warning) = self.write_log.written(cell.read.text().trim_start_matches('@')) {
             screen.note(&format!("warning: {warning}"));
         }
-        let is_stored = self.holds(cell).await.map_err(|failure| {
-            let message = format!(
-                "the controller accepted {}, but the value could not be read back: {}",
-                cell.write.text(),
-                failure.message
-            );
-            Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(cell.write.command()))
-        })?;
-        if !is_stored {
+        if !cell.is(&read_back(self, &cell.write, &cell.read).await?) {
             return Err(Failure::new(
                 Kind::Malformed,
                 format!("the controller accepted {}, but the stored value differs", cell.write.text()),
@@ -112,10 +103,6 @@ impl Link {
             }
         }
         Ok(None)
-    }
-    /// Whether a cell contains its new value.
-    async fn holds(&mut self, cell: &Cell) -> Result<bool, Failure> {
-        Ok(cell.is(&self.ask(&cell.read).await?))
     }
 }
 

@@ -7,7 +7,6 @@ use std::marker::PhantomData;
 use super::eeprom::{Cell, Cells, parameter_cell, parameter_sketch};
 use super::field_values::{Changes, NOT_IN_MANUAL, word};
 use super::item_reads::read_each;
-use super::link::{Link, Toyo, wrong};
 use super::number_arguments::Numbers;
 use crate::prelude::*;
 use armctl_controller::toyo::field::{self, Form};
@@ -40,27 +39,48 @@ pub trait Kind: Debug + Send + Sync + 'static {
     const IDS: Ids;
     /// Fields of a row, in the order of the protocol.
     const FIELDS: &'static [Field];
+    /// Whether a row of zeros counts as empty.
+    const ZERO_IS_BLANK: bool = false;
+    /// Id of the parameter whose rows the table has. A table of another command implements the functions that use it.
+    const TABLE: &'static str = "";
 
     /// Field of the row number.
-    fn key() -> &'static field::Field;
+    fn key() -> &'static field::Field {
+        &parameter(Self::TABLE).key.fields[0]
+    }
 
     /// Layout of the fields after the row number.
-    fn body() -> Layout;
+    fn body() -> Layout {
+        parameter(Self::TABLE).body()
+    }
 
     /// Request that reads a row.
-    fn read(row: i32) -> Result<Request, Failure>;
+    fn read(row: i32) -> Result<Request, Failure> {
+        Request::read_parameter(parameter(Self::TABLE), Some(row)).map_err(|error| wrong(&error))
+    }
 
     /// EEPROM cell of a row with these values.
-    fn cell(row: i32, values: Vec<Value>) -> Result<Cell, Failure>;
+    fn cell(row: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+        row_cell(parameter(Self::TABLE), row, values)
+    }
 
     /// Block that writes a row. `?` stands for values that are kept.
-    fn sketch(row: i32, values: &[Option<Value>]) -> String;
+    fn sketch(row: i32, values: &[Option<Value>]) -> String {
+        parameter_sketch(parameter(Self::TABLE), Some(row), values)
+    }
 
     /// Converts a record to the values of a row.
     fn value(record: &Record) -> Self::Value;
+}
 
-    /// Whether a row of zeros counts as empty.
-    const ZERO_IS_BLANK: bool = false;
+fn parameter(id: &str) -> &'static Parameter {
+    Parameter::named(id).expect("every table is in the table of parameters")
+}
+
+/// EEPROM cell of a row of a parameter that is a table.
+pub fn row_cell(table: &'static Parameter, row: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+    let values = std::iter::once(Value::Number(row)).chain(values).collect();
+    parameter_cell(table, values).map_err(|error| wrong(&error))
 }
 
 /// Help of commands that write to the EEPROM.
@@ -321,59 +341,6 @@ fn plain(field: &field::Field, value: &Value) -> String {
     }
 }
 
-/// A table of parameters: T2, T3, T5.
-pub trait TableOf: Debug + Send + Sync + 'static {
-    /// See [`Kind::Value`].
-    type Value: Debug + Clone + Serialize + JsonSchema;
-    /// Id of the parameter.
-    const TABLE: &'static str;
-    /// See [`Kind::WORDS`].
-    const WORDS: TableWords;
-    /// See [`Kind::IDS`].
-    const IDS: Ids;
-    /// See [`Kind::FIELDS`].
-    const FIELDS: &'static [Field];
-
-    /// See [`Kind::value`].
-    fn value(record: &Record) -> Self::Value;
-}
-
-fn table<T: TableOf>() -> &'static Parameter {
-    Parameter::named(T::TABLE).expect("every table is in the table of parameters")
-}
-
-impl<T: TableOf> Kind for T {
-    type Value = T::Value;
-    const WORDS: TableWords = T::WORDS;
-    const IDS: Ids = T::IDS;
-    const FIELDS: &'static [Field] = T::FIELDS;
-
-    fn key() -> &'static field::Field {
-        &table::<T>().key.fields[0]
-    }
-
-    fn body() -> Layout {
-        table::<T>().body()
-    }
-
-    fn read(row: i32) -> Result<Request, Failure> {
-        Request::read_parameter(table::<T>(), Some(row)).map_err(|error| wrong(&error))
-    }
-
-    fn cell(row: i32, values: Vec<Value>) -> Result<Cell, Failure> {
-        let values = std::iter::once(Value::Number(row)).chain(values).collect();
-        parameter_cell(table::<T>(), values).map_err(|error| wrong(&error))
-    }
-
-    fn sketch(row: i32, values: &[Option<Value>]) -> String {
-        parameter_sketch(table::<T>(), Some(row), values)
-    }
-
-    fn value(record: &Record) -> T::Value {
-        T::value(record)
-    }
-}
-
 /// Table T2, the speed table.
 #[derive(Debug)]
 pub struct Speed;
@@ -394,7 +361,7 @@ pub struct TorqueRow {
     load: f64,
 }
 
-impl TableOf for Speed {
+impl Kind for Speed {
     type Value = f64;
     const TABLE: &'static str = "T2";
     const IDS: Ids = ids!("toyo.speed-table");
@@ -407,7 +374,7 @@ impl TableOf for Speed {
     }
 }
 
-impl TableOf for Accel {
+impl Kind for Accel {
     type Value = f64;
     const TABLE: &'static str = "T3";
     const IDS: Ids = ids!("toyo.accel-table");
@@ -424,7 +391,7 @@ impl TableOf for Accel {
     }
 }
 
-impl TableOf for Torque {
+impl Kind for Torque {
     type Value = TorqueRow;
     const TABLE: &'static str = "T5";
     const IDS: Ids = ids!("toyo.torque-table");

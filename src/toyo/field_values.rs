@@ -8,7 +8,6 @@ use std::ops::Range;
 use serde_json::Value as Json;
 
 use crate::prelude::*;
-use armctl_controller::similar_word::nearest;
 use armctl_controller::toyo::field::{Field, Form, Number};
 use armctl_controller::toyo::layout::{Layout, UNLISTED};
 use armctl_frame::store::comma_hint;
@@ -377,7 +376,6 @@ fn usage(slots: &[ValueSlot], layout: &Layout) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_controller::toyo::table::Parameter;
 
     fn body(name: &str) -> Layout {
         Parameter::named(name).unwrap().body()

@@ -1,6 +1,5 @@
 //! `toyo home`: return to the origin.
 
-use super::link::{Link, Toyo};
 use super::position::{Coordinates, UNIT, titled};
 use super::wait::{AcceptedWork, Work};
 use crate::prelude::*;

@@ -1,7 +1,6 @@
 //! Command `toyo host on|off`: takes or releases host control.
 
 use super::control_commands::no_effect;
-use super::link::Toyo;
 use super::wait::wait_for_status;
 use crate::prelude::*;
 use armctl_frame::settings_report::Switch;

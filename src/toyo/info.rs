@@ -1,7 +1,5 @@
 //! `toyo info`: type and versions of the controller.
 
-use super::link::Link;
-use super::link::Toyo;
 use super::number_arguments::saturated_byte;
 use crate::prelude::*;
 

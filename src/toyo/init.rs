@@ -1,15 +1,8 @@
 //! `toyo init`: clears memory.
 
-use std::time::Duration;
-
-use clap::ValueEnum;
-
-use super::link::Link;
-use super::link::Toyo;
 use super::task;
 use super::wait::status_page;
 use crate::prelude::*;
-use armctl_frame::dry_run::unknown;
 
 /// Clear memory. Only a backup can restore the cleared memory.
 #[derive(Debug, Args)]

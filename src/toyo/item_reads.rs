@@ -2,10 +2,9 @@
 //! answers.
 
 use super::eeprom::STORED_VALUE;
-use super::link::{Link, Refusal};
+use super::link::Refusal;
 use super::refusal;
 use crate::prelude::*;
-use armctl_frame::dry_run::unknown;
 
 /// The answer or the failure of each request.
 pub type Answers = Vec<Result<Record, Failure>>;

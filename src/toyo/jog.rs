@@ -1,23 +1,18 @@
 //! `toyo jog`: moves one axis for a time or by inching steps. The stop is always sent at the end.
 
 use std::convert::Infallible;
-use std::fmt;
 use std::sync::mpsc::{self, Sender};
-use std::time::Duration;
 
-use clap::ValueEnum;
 use tokio::time::{Instant, sleep, sleep_until, timeout_at};
 
 use super::field_values::machine;
-use super::link::Toyo;
-use super::link::{Link, MotionKind, jog};
+use super::link::{MotionKind, jog};
 use super::position::{Coordinates, UNIT, titled};
 use super::refusal;
 use super::wait::{POLL_INTERVAL, explain_present_error, position_request, status_page};
 use crate::prelude::*;
 use armctl_frame::robot::motion::Motion;
 use armctl_frame::robot::position::Position;
-use armctl_frame::settings::duration;
 
 /// Jog one axis, and stop it (TO 2-7, 3-2).
 ///
@@ -375,13 +370,10 @@ impl Command for Jog {
     const ID: &'static str = "toyo.jog";
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+    const JOGS: bool = true;
 
     fn intent(&self) -> String {
         self.in_words(&self.axis.to_string())
-    }
-
-    fn jogs(&self) -> bool {
-        true
     }
 
     /// Reads the letters of the axes first, because the user can name an axis by its letter.

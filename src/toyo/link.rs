@@ -4,7 +4,7 @@
 mod abandoned_changes;
 mod observer;
 
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 
 use derive_more::{Deref, DerefMut};
 
@@ -18,7 +18,7 @@ use super::refusal;
 use super::trace::Trace;
 use super::user_choices::UserChoices;
 use super::write_log::WriteLog;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_client::toyo::{Client, Error, Line, is_stop, status_page};
 pub use armctl_client::toyo::{MotionKind, Refusal, jog};
 use armctl_controller::toyo::request::Answer;

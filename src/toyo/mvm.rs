@@ -1,10 +1,9 @@
 //! `toyo mvm`: groups of the MVM table. A group has five sheets: corners, pieces, counters, approach and destination.
 
 use super::eeprom::{Cells, parameter_cell, parameter_sketch};
-use super::eeprom_tables::{Listed, WRITING, texts, unlisted};
+use super::eeprom_tables::{Listed, WRITING, row_cell, texts, unlisted};
 use super::field_values::{Changes, word};
 use super::item_reads::read_each;
-use super::link::{Link, Toyo, wrong};
 use super::number_arguments::Numbers;
 use crate::prelude::*;
 use armctl_controller::toyo::field;
@@ -237,8 +236,7 @@ impl Writable for Groups {
                     return Err(Failure::usage(message).hint("type all values; nothing was written"));
                 }
             };
-            let values = std::iter::once(Value::Number(group)).chain(values).collect();
-            Ok(parameter_cell(sheet(index), values).map_err(|error| wrong(&error))?.wanted)
+            Ok(row_cell(sheet(index), group, values)?.wanted)
         };
         draft.iter().enumerate().map(record).collect()
     }

@@ -2,12 +2,10 @@
 
 use super::link::Link;
 use super::refusal;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::names::Kind as NameKind;
 use armctl_controller::toyo::field::{Field, Form};
 use armctl_controller::toyo::names as names_of;
-use armctl_controller::user_input;
-use armctl_frame::names;
 
 /// A number or a range: `5`, `1-5`, `1..5`.
 #[derive(Debug, Clone, PartialEq, Eq)]

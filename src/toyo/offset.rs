@@ -1,6 +1,5 @@
 //! `toyo offset`: current offset of coordinates.
 
-use super::link::Toyo;
 use super::position::Coordinates;
 use crate::prelude::*;
 

@@ -1,8 +1,6 @@
 //! `toyo override`: speed override of programs.
 
 use super::eeprom::{Cell, Cells};
-use super::link::Toyo;
-use super::link::wrong;
 use super::number_arguments::{number, saturated_byte};
 use crate::prelude::*;
 use armctl_controller::toyo::field::Field;

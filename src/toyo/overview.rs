@@ -3,7 +3,7 @@
 use super::link::Link;
 use super::position::Coordinates;
 use super::top::alarms;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::toyo::status::RunMode;
 use armctl_controller::toyo::table::Command;
 use armctl_frame::face::overview::{LeftOver, OverviewReport};

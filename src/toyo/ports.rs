@@ -1,8 +1,6 @@
 //! `toyo ports`: serial ports of this computer.
 
-use anyhow::Context as _;
-
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::OfflineCommand;
 use armctl_transport::port_list::{self, PortInfo, PortKind, PortUser};
 

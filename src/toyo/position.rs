@@ -1,7 +1,7 @@
 //! `toyo position`: current position of the axes.
 
 use super::link::Toyo;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::plot::SeriesHistory;
 use armctl_frame::robot::position::{self as robot, Positions};
 

@@ -1,9 +1,7 @@
 //! `toyo raw`: sends any block and explains the answer.
 
 use super::decode::FieldRow;
-use super::link::Link;
 use super::number_arguments::saturated_byte;
-use crate::link::Toyo;
 use crate::prelude::*;
 use armctl_controller::toyo::describe::{Sender, describe};
 use armctl_controller::toyo::request::{Answer, BlockError};

@@ -1,10 +1,8 @@
 //! `toyo robot-type`: robot type of an axis.
 
-use super::link::Toyo;
 use super::number_arguments::number;
 use crate::prelude::*;
 use armctl_controller::toyo::field::Field;
-use armctl_frame::dry_run::unknown;
 
 /// Set the robot type of an axis. The type determines the parameters of the axis.
 #[derive(Debug, Args)]

@@ -1,24 +1,20 @@
 //! `toyo run`: start of programs, and moves to a point.
 
-use std::time::Duration;
+use std::marker::PhantomData;
 
-use super::complete;
-use super::link::{self, Link, Toyo};
 use super::number_arguments::saturated_byte;
 use super::point::{parse_point, table as point_table};
 use super::position::{Coordinates, UNIT, titled};
-use super::program::steps;
-use super::task_selection;
+use super::programs::Kind as ProgramKind;
 use super::wait::{AcceptedWork, End, Work, step};
+use super::{easy, palletizing};
 use crate::prelude::*;
 use armctl_controller::toyo::status::RunMode;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::gate::data_changed;
 use armctl_frame::repeated_runs::{Repeat, Runs};
 use armctl_frame::robot::motion::Motion;
 use armctl_frame::robot::position::Position;
 use armctl_frame::robot::program::{self as robot, ProgramState};
-use armctl_frame::settings::duration;
 use armctl_frame::wait_arguments::{MotionEnd, ProgramEnd};
 
 commands! {
@@ -27,9 +23,9 @@ commands! {
         /// Start the sequential program
         Sequential(Sequential),
         /// Start palletizing
-        Palletizing(Palletizing),
+        Palletizing(Numbered<palletizing::Numbered>),
         /// Start the easy program
-        Easy(Easy),
+        Easy(Numbered<easy::Numbered>),
         /// Move to a row of the coordinate table
         Point(Point),
     }
@@ -75,76 +71,48 @@ impl Command for Sequential {
     }
 }
 
-/// Start palletizing, or continue palletizing after a stop (TO 2-7).
+/// Start palletizing or the easy program, or continue after a stop (TO 2-7).
 #[derive(Debug, Args)]
-pub struct Palletizing {
+#[command(after_help = K::RUN_HELP)]
+pub struct Numbered<K: ProgramKind> {
     /// Program to select first [default: the current program]
-    #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=16))]
+    #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=K::COUNT))]
     number: Option<i32>,
     /// Program to select before the start, the same as NUMBER
-    #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=16))]
+    #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=K::COUNT))]
     program: Option<i32>,
     #[command(flatten)]
     end: ProgramEnd,
     #[command(flatten)]
     repeat: Repeat,
+    #[arg(skip)]
+    of: PhantomData<K>,
 }
 
-impl Command for Palletizing {
+impl<K: ProgramKind> Command for Numbered<K> {
     type Family = Toyo;
     type Report = RunReport;
-    const ID: &'static str = "toyo.run.palletizing";
+    const ID: &'static str = K::IDS[2];
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
-        format!("run {}{}", program_text("palletizing", self.number.or(self.program)), self.repeat.describe())
+        let program = match self.number.or(self.program) {
+            Some(number) => format!("{} {number}", K::TYPE_NAME),
+            None => format!("the last selected {}", K::TYPE_NAME),
+        };
+        format!("run {program}{}", self.repeat.describe())
     }
 
     async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
         let program = self.number.or(self.program);
-        confirm_start(&mut context, Change::new(self.intent()), Program::Palletizing(program)).await?;
-        select_program(context.link, table::Command::Spln, program).await?;
-        let report =
-            start_and_wait(context, &Request::bare(table::Command::Ppst), self.end.limit(), self.repeat).await?;
-        Ok(report.of("palletizing", program))
-    }
-}
-
-/// Start the easy program, or continue it after a stop (TO 2-7).
-#[derive(Debug, Args)]
-#[command(after_help = "Parameter M10 selects easy mode: `armctl toyo param set M10 E`.")]
-pub struct Easy {
-    /// Program to select first [default: the current program]
-    #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=8))]
-    number: Option<i32>,
-    /// Program to select before the start, the same as NUMBER
-    #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=8))]
-    program: Option<i32>,
-    #[command(flatten)]
-    end: ProgramEnd,
-    #[command(flatten)]
-    repeat: Repeat,
-}
-
-impl Command for Easy {
-    type Family = Toyo;
-    type Report = RunReport;
-    const ID: &'static str = "toyo.run.easy";
-    const RISK: Risk = Risk::Motion;
-    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
-
-    fn intent(&self) -> String {
-        format!("run {}{}", program_text("easy", self.number.or(self.program)), self.repeat.describe())
-    }
-
-    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
-        let program = self.number.or(self.program);
-        confirm_start(&mut context, Change::new(self.intent()), Program::Easy(program)).await?;
-        select_program(context.link, table::Command::Sesn, program).await?;
-        let report =
-            start_and_wait(context, &Request::bare(table::Command::Sesy), self.end.limit(), self.repeat).await?;
-        Ok(report.of("easy", program))
+        let [_, select, progress, start] = K::COMMANDS;
+        confirm_start(&mut context, Change::new(self.intent()), Program::Numbered(K::WORD, progress, program)).await?;
+        if let Some(number) = program {
+            context.link.ask(&Request::of(select, [Value::Number(number)])).await?;
+        }
+        let report = start_and_wait(context, &Request::bare(start), self.end.limit(), self.repeat).await?;
+        Ok(report.of(K::WORD, program))
     }
 }
 
@@ -231,7 +199,7 @@ impl Report for PointMoveReport {
 impl Point {
     /// Reads the position of the point; `None` if the controller refuses to report it.
     async fn read_point(&self, link: &mut Link) -> Result<Option<Coordinates>, Failure> {
-        let request = Request::read_parameter(point_table(), Some(self.point)).map_err(|error| link::wrong(&error))?;
+        let request = Request::read_parameter(point_table(), Some(self.point)).map_err(|error| wrong(&error))?;
         let letters = link.letters().await?;
         Ok(link.try_ask(&request).await?.ok().map(|record| Coordinates::of(&record, letters)))
     }
@@ -265,8 +233,8 @@ impl Point {
 /// Program to start: at a step, with a number, or the current program.
 enum Program {
     Sequential(Option<i32>),
-    Palletizing(Option<i32>),
-    Easy(Option<i32>),
+    /// Word of the type, command that reports the progress, and number.
+    Numbered(&'static str, table::Command, Option<i32>),
 }
 
 impl Program {
@@ -285,8 +253,7 @@ impl Program {
                     Err(_) => format!("It is the program of task {task}; the controller did not report the step."),
                 })
             }
-            Self::Palletizing(number) => progress(link, table::Command::Rpld, ("palletizing", *number)).await,
-            Self::Easy(number) => progress(link, table::Command::Resd, ("easy", *number)).await,
+            Self::Numbered(kind, question, number) => progress(link, *question, (kind, *number)).await,
         }
     }
 }
@@ -323,20 +290,6 @@ async fn confirm_start(context: &mut Context<'_, Toyo>, change: Change, program:
         change = change.note(format!("The speed override is {percent} %."));
     }
     confirmer.confirm(&change).await
-}
-
-fn program_text(kind: &str, program: Option<i32>) -> String {
-    match program {
-        Some(number) => format!("{kind} program {number}"),
-        None => format!("the last selected {kind} program"),
-    }
-}
-
-async fn select_program(link: &mut Link, command: table::Command, program: Option<i32>) -> Result<(), Failure> {
-    match program {
-        Some(number) => link.ask(&Request::of(command, [Value::Number(number)])).await.map(|_| ()),
-        None => Ok(()),
-    }
 }
 
 /// Starts the program. If requested, waits for its end up to a time limit. A repetition begins only after the end was

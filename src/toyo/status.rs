@@ -1,6 +1,5 @@
 //! `toyo status`: all five pages of the status.
 
-use super::link::Toyo;
 use super::overview::state;
 use crate::prelude::*;
 use armctl_controller::toyo::status::{self, ProgramKind};

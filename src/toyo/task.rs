@@ -1,7 +1,5 @@
 //! `toyo task`: the current task. Programs, tables and positions belong to a task.
 
-use super::link::Link;
-use super::link::Toyo;
 use super::number_arguments::{number, read_back, read_back_mismatch, saturated_byte};
 use crate::prelude::*;
 use armctl_controller::toyo::field::Field;

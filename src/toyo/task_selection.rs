@@ -1,6 +1,5 @@
 //! Temporary selection of another task during a command.
 
-use super::link::Link;
 use crate::prelude::*;
 use armctl_controller::toyo::table::Command;
 

@@ -1,22 +1,16 @@
 //! Test bench: the blocks of a command line, and their effect on a simulator in virtual time.
 
 use std::collections::{HashMap, VecDeque};
-use std::fmt;
-use std::sync::{Arc, RwLock, RwLockReadGuard, RwLockWriteGuard};
-use std::time::Duration;
+use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
 
 use serde_json::Value;
 
 use super::connect;
-use super::link::Link;
-use super::link::Toyo;
 use super::simulated::Simulated;
 use crate::prelude::*;
 use armctl_client::toyo::{Client, FENCE};
 use armctl_controller::toyo::simulator::Start;
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::face::Face;
-use armctl_frame::face::registration::Registered;
 use armctl_frame::gate::{Gate, Grant, Intent};
 use armctl_frame::output::{ColorChoice, Format};
 use armctl_frame::testing::{self, QUIET, context, frames, planned, unlimited_access};
@@ -284,7 +278,7 @@ fn runtime() -> tokio::runtime::Runtime {
 }
 
 /// The family.
-const FACE: &dyn Face = &Registered::<Toyo>::FACE;
+const FACE: &Face = &Face::of::<Toyo>();
 
 /// Robot and command of a command line.
 fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {

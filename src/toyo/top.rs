@@ -6,7 +6,7 @@ use super::io::{INPUTS, OUTPUTS, PortBank, ports_of};
 use super::link::{Link, Toyo};
 use super::overview::report;
 use super::position::Coordinates;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::toyo::table::Command;
 use armctl_frame::Family as _;
 use armctl_frame::face::registration;

@@ -2,7 +2,7 @@
 
 use std::net::SocketAddr;
 
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::toyo::describe::{Sender, summary};
 use armctl_frame::trace;
 use armctl_transport::tap::Direction;
@@ -114,7 +114,6 @@ fn text(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_frame::ConnectMode;
     use armctl_frame::output::{ColorChoice, Format};
 
     /// Content of a capture file with a request and its answer.

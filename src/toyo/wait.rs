@@ -1,18 +1,13 @@
 //! Wait for the end of work that the controller accepted: a return to origin, a program, a transfer of the memory card.
 
-use std::time::Duration;
-
 use tokio::time::Instant;
 
-use super::link::Link;
 use super::position::Coordinates;
-use super::program::steps;
 use super::refusal;
 use crate::prelude::*;
 pub(super) use armctl_client::toyo::status_page;
 use armctl_controller::toyo::errors;
 use armctl_controller::toyo::table::Command;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::output::progress::Progress;
 
 /// Interval between two reads of the status.
@@ -353,7 +348,6 @@ impl WorkState {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_controller::toyo::field::Value;
 
     const IDLE: u8 = 0x30;
     const RUNS: u8 = 0x32;

@@ -2,8 +2,6 @@
 
 mod report;
 
-use clap::ValueEnum;
-
 pub(super) use self::report::in_a_line;
 use self::report::{WithTexts, YercAlarmFields, entry, explain, short};
 use super::control_commands::usage;
@@ -12,7 +10,7 @@ use super::link::Link;
 use super::link::Yerc;
 use super::number_arguments::parse_in_range;
 use crate::item_requests::read_failure;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::yerc::payload;
 use armctl_controller::yerc::query::{self, Query, ReadAlarm, ReadAlarmHistory};
 use armctl_controller::yerc::wire::Status;
@@ -276,7 +274,6 @@ order! {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
     use crate::testing::{error_text, frames, golden, reports};

@@ -1,17 +1,12 @@
 //! `yerc axes`, `yerc position-error`, `yerc torque`: data per axis.
 
-use std::fmt;
 use std::str::FromStr;
 
-use super::control_commands::usage;
 use super::item_requests::ask_existing;
-use super::link::Yerc;
 use super::position::ByAxis;
-use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_controller::yerc::payload::AxisNames;
 use armctl_controller::yerc::query::{Coordinates, ReadAxes, ReadPositionError, ReadTorque};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::items;
 use armctl_frame::items::ItemError;
 
@@ -228,13 +223,11 @@ by_axis! {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
     use crate::testing::{frames, frames_on, golden, reports};
     use armctl_client::yerc::AxisSet;
     use armctl_controller::yerc::payload::{Axes, Text};
-    use armctl_frame::failure::Kind;
     use armctl_frame::output::render;
 
     #[test]

@@ -5,10 +5,8 @@ use std::collections::{HashMap, VecDeque};
 
 use super::item_requests::{Batch, Outcome, ReadError};
 use super::link::Link;
-use armctl_controller::yerc::request::Request;
+use crate::prelude::basics::*;
 use armctl_controller::yerc::variables::PlannedRead;
-use armctl_frame::dry_run::{Reason, unknown};
-use armctl_frame::failure::{Failure, Kind};
 
 /// How a refused run is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

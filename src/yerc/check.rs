@@ -1,7 +1,5 @@
 //! Checks of `armctl robots check` that are specific to the controller.
 
-use super::link::Link;
-use super::link::Yerc;
 use super::overview::left_over;
 use crate::prelude::*;
 use armctl_controller::yerc::payload::StatusBit;

@@ -1,10 +1,8 @@
 //! Commands that send one request: servo, hold, hlock, cycle, say.
 
-use clap::ValueEnum;
-
 use super::link::Yerc;
 use super::status::cycle_name;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::yerc::payload::{ControllerStatus, CycleMode};
 use armctl_controller::yerc::query::{self, Query};
 use armctl_frame::settings_report::Switch;
@@ -195,6 +193,6 @@ pub(super) fn refuse_controls(what: &str, text: &str) -> Result<(), Failure> {
 }
 
 /// Failure: a request cannot be built from these arguments.
-pub(super) fn usage(error: impl std::fmt::Display) -> Failure {
+pub(super) fn usage(error: impl fmt::Display) -> Failure {
     Failure::usage(error.to_string()).hint("see `--help` of the command, or `armctl help yerc` for all commands")
 }

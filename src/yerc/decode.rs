@@ -4,9 +4,7 @@ mod capture;
 
 pub use self::capture::FrameDecoder;
 use crate::prelude::*;
-use armctl_controller::user_input;
 use armctl_controller::yerc::describe::{Description, FieldNote, Sender, describe};
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::table::service;
 use armctl_controller::yerc::wire::{ANSWER_BIT, HEADER_LEN, RequestFrame};
 use armctl_frame::decode::capture::{Input, Selection, file_among, parse_hex};

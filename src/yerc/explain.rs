@@ -5,7 +5,6 @@ use armctl_controller::yerc::status;
 use armctl_frame::face::explain::{self as face, Codes, Known};
 use armctl_frame::robot::alarm::{Alarm, ExtraColumns, Kind, Source};
 use armctl_frame::settings::alarms::{Alarms, Origin};
-use armctl_frame::settings::target::Family;
 
 /// Status code (1 byte) or added status code (2 bytes) of an FS100, DX100, DX200 or YRC1000
 #[derive(Debug, Args)]

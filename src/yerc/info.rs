@@ -1,11 +1,8 @@
 //! `yerc info`: software, models, parameters.
 
 use super::axes::{Groups, groups_of};
-use super::control_commands::usage;
 use super::item_requests::ask_existing;
-use super::link::Yerc;
 use super::number_arguments::parse_in_range;
-use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_controller::yerc::payload::{SystemInfo, Text};
 use armctl_controller::yerc::query::{QueryError, ReadSystemInfo, SystemPart};
@@ -147,7 +144,6 @@ impl Report for Versions {
 mod tests {
     use super::*;
     use crate::testing::{frames, frames_on, golden, reports};
-    use armctl_frame::failure::Kind;
     use armctl_frame::output::render;
 
     #[test]

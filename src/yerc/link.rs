@@ -1,7 +1,6 @@
 //! Controller connection of a command: the client, with conversion of its errors and a trace.
 
-use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::sync::Mutex;
 
 use derive_more::{Deref, DerefMut};
 
@@ -11,12 +10,11 @@ use super::failure::{failure, refused};
 use super::item_requests::{Batch, Outcome};
 use super::model_cache::CachedModel;
 use super::trace::Trace;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_client::Watcher;
 use armctl_client::yerc::{Cause, Client, Event, Totals, TransferError};
 pub use armctl_client::yerc::{Error, Refusal, RefusedRequest};
 use armctl_controller::yerc::query::{Query, QueryError};
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{DownloadEnd, Reply, UploadEnd};
 use armctl_frame::Family;
 use armctl_frame::dry_run::Plan;

@@ -16,8 +16,6 @@ use self::arguments::{
 use self::execution::{Execution, Goal, MotionReport};
 use self::question::Question;
 use self::variable_target::Motion;
-use super::link::Link;
-use super::link::Yerc;
 use crate::number_arguments::parse_in_range;
 use crate::prelude::*;
 use armctl_controller::units;

@@ -4,7 +4,6 @@ use jiff::Timestamp;
 
 use super::check::software;
 use super::file::{FileReading, read_files};
-use super::link::{Link, Yerc};
 use crate::prelude::*;
 use armctl_controller::yerc::names::{FILES, FileNames, read};
 use armctl_frame::items::{self, ItemError};

@@ -2,15 +2,11 @@
 
 use std::fmt::Write as _;
 
-use clap::ValueEnum;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::Serializer;
-use serde_json::{Map, Value};
+use serde_json::Map;
 
-use super::link::Link;
-use super::link::Yerc;
 use super::var::{PositionData, as_position, stored_position};
-use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_client::yerc::AxisSet;
 use armctl_controller::units::{self, Unit};
@@ -18,7 +14,6 @@ use armctl_controller::yerc::payload;
 use armctl_controller::yerc::payload::{Axes, ExtendedForm, Form, MAX_AXES};
 use armctl_controller::yerc::query::{Coordinates, ReadPosition};
 use armctl_controller::yerc::variables;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::items;
 use armctl_frame::plot::SeriesHistory;
 use armctl_frame::robot::position::{self as robot, Joint, Positions, Row};

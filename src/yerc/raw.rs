@@ -1,20 +1,15 @@
 //! `yerc raw`.
 
-use std::time::Duration;
-
 use tokio::time::Instant;
 
 use super::decode::FieldRow;
 use super::file::download_failed;
-use super::link::{self, Link, Refusal};
+use super::link::{self, Refusal};
 use super::var::confirm_raw;
 use crate::failure::refusal_failure;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::text::hex;
-use armctl_controller::user_input;
 use armctl_controller::yerc::describe::{Sender, describe};
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{DownloadEnd, Reply};
 use armctl_controller::yerc::status;
 use armctl_controller::yerc::table::{BATCH_BACKUP_PATH, Row, service};
@@ -289,13 +284,9 @@ impl Report for Answer {
 
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
-    use serde_json::Value;
 
     use super::*;
     use crate::testing::{Bench, DX200, same};
-    use armctl_frame::failure::Kind;
 
     fn answer(status: Status, data: &[u8]) -> Answer {
         let request = Request { command: 0x7A, instance: 5, attribute: 1, service: 0x0E, data: Vec::new() };

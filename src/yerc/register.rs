@@ -4,18 +4,12 @@ use std::collections::HashSet;
 use std::str::FromStr;
 
 use super::batch_split::{BatchSplit, read_in_batches};
-use super::complete;
-use super::control_commands::usage;
-use super::link::{Link, Yerc};
-use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_controller::user_input;
 use armctl_controller::yerc::names::{register, register_address};
 use armctl_controller::yerc::query::Query as _;
 use armctl_controller::yerc::variables::{parse_numbers, plan_register_reads, plan_register_writes};
 use armctl_frame::failure::Kind as FailureKind;
-use armctl_frame::names;
 use armctl_frame::settings_report::{IF_DIFFERENT, OLD_VALUE};
 use armctl_frame::store::{Copy, Dump, Get, List, Restore, Row, TableWrite, WrittenOf, write};
 
@@ -259,7 +253,6 @@ impl Writable for Registers {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::Value;
 
     use super::*;
     use crate::testing::Bench;

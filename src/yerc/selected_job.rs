@@ -1,7 +1,6 @@
 //! Job that a start runs: the text of the confirmation, and a check after the confirmation that the job is still the
 //! same.
 
-use super::link::Link;
 use crate::failure::refusal_failure;
 use crate::prelude::*;
 use armctl_controller::units;

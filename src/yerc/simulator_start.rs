@@ -1,15 +1,9 @@
 //! Start state of a simulated controller.
 
-use std::path::Path;
-
-use anyhow::Context as _;
-
-use crate::prelude::*;
+use crate::prelude::basics::*;
 pub use armctl_client::yerc::Simulated;
 use armctl_controller::yerc::simulator::Start;
-use armctl_files as files;
 use armctl_frame::backup::twin;
-use armctl_frame::settings::target::Family;
 use armctl_transport::fault::FaultSpec;
 
 /// Start state with the busy rate of the faults. It comes from a state file or a backup, or is the built-in state of

@@ -3,10 +3,9 @@
 use super::alarm::{plan_latest, present};
 use super::link::{Link, Yerc};
 use super::overview::state;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::yerc::payload::{ControllerStatus, CycleMode, StatusBit};
 use armctl_controller::yerc::query::ReadStatus;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::state::{Fault, State};
 
 /// Shows all status bits of the controller.

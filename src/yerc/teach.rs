@@ -1,11 +1,6 @@
 //! `yerc teach`: stores the current position of a group in a position variable. The aliases are `position teach P5` and
 //! `var set P5=here`.
 
-use clap::ValueEnum;
-
-use super::complete;
-use super::control_commands::usage;
-use super::link::{Link, Yerc};
 use super::moves::{compared, is_standing, moved_during_question};
 use super::position;
 use super::var::{PositionData, as_position, different_words, is_undefined, stored_position, variable_name};
@@ -15,8 +10,6 @@ use crate::prelude::*;
 use armctl_controller::names::Kind;
 use armctl_controller::yerc::query::{Coordinates, Query as _, ReadPosition, ReadVariable, WriteVariable};
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
-use armctl_frame::dry_run::unknown;
-use armctl_frame::names;
 use armctl_frame::teach::{TeachReport, mismatch, unverified};
 
 /// Stores the current position of a group in a position variable and reads it back (FS and DX 3.3.6, 3.3.16 to

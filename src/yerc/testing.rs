@@ -1,13 +1,8 @@
 //! Test support: the frames that a command line sends, and commands that run on a simulator in virtual time.
 
-use serde_json::Value;
-
-use super::link::Link;
-use super::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::text::hex;
 use armctl_frame::face::Face;
-use armctl_frame::face::registration::Registered;
 use armctl_frame::output::{ColorChoice, Format};
 use armctl_frame::settings_report::IF_DIFFERENT;
 use armctl_frame::testing;
@@ -123,7 +118,7 @@ impl Bench {
 }
 
 /// The family.
-const FACE: &dyn Face = &Registered::<Yerc>::FACE;
+const FACE: &Face = &Face::of::<Yerc>();
 
 /// Robot and command of a command line.
 pub(super) fn resolve_robot(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {

@@ -1,7 +1,6 @@
 //! Live view of a robot: status and position in one line, and axes, torque, alarms and signals in the detail view.
 
 use super::alarm::{SLOTS, present};
-use super::link::{Link, Yerc};
 use super::overview::report;
 use super::position::{CARTESIAN_AXES, ROBOT_AXES, decimal};
 use crate::prelude::*;

@@ -2,9 +2,8 @@
 
 use std::net::SocketAddr;
 
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::yerc::describe::{Sender, summary};
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::wire::RequestFrame;
 use armctl_frame::trace;
 use armctl_transport::tap::Direction;

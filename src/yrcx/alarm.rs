@@ -1,12 +1,9 @@
 //! Commands `yrcx alarm list|history|watch|reset` (4.7.7, 4.8.3).
 
 use super::info::{Part, entry};
-use super::link::{Link, Yrcx};
 use super::number_arguments::Numbers;
 use super::read_requests::ask_each;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::face::shared_commands::CommonReport;
 use armctl_frame::failure;
 use armctl_frame::items::ItemOutcome;

@@ -1,11 +1,8 @@
 //! Arguments that several motion commands use. Numbers stay text: the codec parses each number in the unit of its field
 //! and checks the range.
 
-use clap::ValueEnum;
-
 use super::position::Unit;
 use crate::prelude::*;
-use armctl_controller::user_input;
 use armctl_controller::yrcx::table::Command;
 use armctl_frame::wait_arguments::MotionEnd;
 

@@ -3,7 +3,6 @@
 use std::marker::PhantomData;
 
 use super::fieldbus::BusBoard;
-use super::link::Yrcx;
 use crate::prelude::*;
 
 /// A report that is read with explicit messages. These messages open no I/O connection, start no polls, and lock

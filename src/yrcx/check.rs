@@ -1,12 +1,11 @@
 //! Checks of the controller for `armctl robots check`. They open no connection for images.
 
 use super::connect::endpoint;
-use super::link::Yrcx;
 use super::overview::left_over;
 use crate::prelude::*;
 use armctl_controller::yrcx::answer::Status;
 use armctl_frame::Family as _;
-use armctl_frame::face::layers::{Layer, Layers};
+use armctl_frame::face::layers::Layer;
 use armctl_frame::session_client::is_held;
 use armctl_frame::settings::Sessions;
 

@@ -4,10 +4,8 @@ use jiff::Zoned;
 use jiff::civil::{Date, DateTime, Time};
 
 use super::confirmed_write::read_current;
-use super::link::{Link, Yrcx};
 use super::read_requests::ask_each;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_frame::items;
 use armctl_frame::items::ItemError;
 use armctl_frame::robot::item::{Item, Written, WrittenItems};
@@ -275,7 +273,6 @@ fn time_order(link: &Link, time: Time) -> Result<Order, Failure> {
 #[cfg(test)]
 mod tests {
     use jiff::civil::datetime;
-    use serde_json::json;
 
     use super::*;
     use crate::testing::{Reply, Scripted, objection, read_in_turn, report_on, run_on, words};

@@ -5,7 +5,6 @@ use serde_json::Value as Json;
 
 use super::command_result::{CommandResult, ReplacedRow};
 use super::data::{Comments, Hands, Pallets, Points, Shifts};
-use super::link::{Link, Yrcx};
 use super::numbered_tables::{Kind, Numbered, Row};
 use super::old_values::{question, read_old_values};
 use super::param::{Amount, Parameters, Setting};
@@ -13,10 +12,8 @@ use super::position::Unit;
 use super::read_requests::{check_echo, refuses_all_commands};
 use super::refusal::refused;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::table::Command;
 use armctl_controller::yrcx::table::parameter::Parameter;
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::robot::item::{Item, Written, WrittenItems, as_requested};
 use armctl_frame::store::{describe_change, overwriting};
 

@@ -1,13 +1,10 @@
 //! Connection to a controller: over a fieldbus, or a simulator in this process.
 
-use std::fmt;
-
 use super::buses::{self, BUSES};
 use super::fieldbus::{self, Board, ConnectionParameters, Fieldbus, Purpose, Simulation};
-use super::link_error::not_open;
 use super::simulated;
 use super::trace::{Opening, Recorder};
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::settings::target::bus::simulators;
 use armctl_frame::settings::target::{self, Bus, Place};
 use armctl_transport::image::ImageLink;

@@ -3,8 +3,6 @@
 mod capture;
 pub mod images;
 
-use std::path::Path;
-
 pub use self::capture::ImageDecoder;
 use super::field_row::FieldRow;
 use super::raw::words;
@@ -138,7 +136,6 @@ impl Report for DecodedWords {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_controller::yrcx::value::Key;
     use armctl_frame::decode::Decode as _;
 
     fn explained(wi: Option<&str>, wo: Option<&str>) -> DecodedWords {

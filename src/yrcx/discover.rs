@@ -1,9 +1,7 @@
 //! Fieldbus devices for `armctl robots discover`.
 
-use std::time::Duration;
-
 use schemars::{Schema, SchemaGenerator};
-use serde_json::{Map, Value};
+use serde_json::Map;
 
 use super::buses::{self, Searches};
 use super::fieldbus::{Device, Scope};

@@ -4,11 +4,9 @@ use super::buses::BUSES;
 use super::fieldbus::ErrorMeaning;
 use super::info::describe_alarm;
 use crate::prelude::*;
-use armctl_controller::yrcx::alarm::Alarm;
 use armctl_frame::face::explain::{self as face, Codes, Known};
 use armctl_frame::robot::alarm::{Alarm as CommandResults, ExtraColumns, Kind, Source};
 use armctl_frame::settings::alarms::{Alarms, Origin};
-use armctl_frame::settings::target::Family;
 
 /// Alarm number of a YRCX, or error of a PROFINET device
 #[derive(Debug, Args)]

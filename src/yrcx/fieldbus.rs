@@ -1,21 +1,13 @@
 //! Interface that each fieldbus implements. `buses.rs` lists the fieldbuses.
 
 use std::any::Any;
-use std::fmt;
 use std::net::SocketAddr;
-use std::path::Path;
-use std::time::Duration;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-use serde_json::{Map, Value};
+use serde_json::Map;
 
 use super::decode::images::BusDecoder;
-use crate::prelude::*;
-use armctl_controller::yrcx::alarm::Alarm;
+use crate::prelude::basics::*;
 use armctl_controller::yrcx::simulator::Start;
-use armctl_files as files;
-use armctl_frame::face::layers::Layers;
 use armctl_frame::failure::plain;
 use armctl_frame::settings::target::{Address, Bus, Place, Sim, Target};
 use armctl_transport::image::tap::Tap;

@@ -4,8 +4,7 @@
 mod board;
 mod observer;
 
-use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::sync::Mutex;
 
 use derive_more::{Deref, DerefMut};
 
@@ -14,14 +13,12 @@ pub use super::command_result::CommandResult;
 use super::connect::{self, Endpoint, OpenBoard};
 use super::failure::{failure, stopped};
 use super::fieldbus::Fieldbus;
-use super::link_error::not_open;
 use super::trace::{Recorder, Trace};
 use super::unit_argument::Unit;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_client::yrcx;
 pub use armctl_client::yrcx::hex;
 use armctl_client::yrcx::{Client, Error, Options, Refusal, Reply, Totals};
-use armctl_controller::yrcx::alarm::Alarm;
 use armctl_controller::yrcx::procedure::Procedure;
 use armctl_controller::yrcx::register::Register;
 use armctl_controller::yrcx::table::Command;

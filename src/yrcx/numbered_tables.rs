@@ -4,11 +4,9 @@
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
-use super::link::{Link, Yrcx};
 use super::number_arguments::{Numbers, named, runs};
 use super::read_requests::{ask_each, is_undefined};
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::names::Kind as Label;
 use armctl_controller::yrcx::table::Command;
 use armctl_controller::yrcx::value::Value;

@@ -4,12 +4,10 @@
 use serde_json::Value as Json;
 
 use super::confirmed_write::read_current;
-use super::link::Link;
 use super::robot_settings::{SETTINGS, Setting};
 use super::single_command::format_field;
 use super::var::held;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::table::Command;
 use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
 

@@ -1,10 +1,8 @@
 //! Summary of a robot for `armctl status`.
 
 use super::info::entry;
-use super::link::Link;
 use super::status::position_mm;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::answer::Status;
 use armctl_controller::yrcx::signal::input;
 use armctl_controller::yrcx::table::Command;

@@ -3,14 +3,9 @@
 
 use std::sync::LazyLock;
 
-use super::complete;
-use super::link::{Link, Yrcx};
 use super::number_arguments::single;
 use super::read_requests::{ask_each, is_undefined};
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
-use armctl_controller::similar_word::nearest;
-use armctl_controller::user_input;
 use armctl_controller::yrcx::table::parameter::{PARAMETERS, Parameter};
 use armctl_frame::store::Row;
 

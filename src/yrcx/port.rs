@@ -1,14 +1,11 @@
 //! `yrcx port` (4.5.1): ports of eight signals, read and written with remote commands.
 
-use super::link::Yrcx;
 use super::number_arguments::{Series, named, single};
 use super::read_requests::ask_each;
 use super::single_command::one_row;
-use crate::complete;
 use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
 use armctl_controller::yrcx::names::signal_of_port;
-use armctl_frame::names;
 use armctl_frame::robot::item::{Columns, Item, Items, Written, WrittenItems};
 
 commands! {

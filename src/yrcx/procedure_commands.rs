@@ -1,6 +1,5 @@
 //! Procedures of the timing charts as commands (chapter 1, section 3).
 
-use super::link::{Link, Yrcx};
 use crate::prelude::*;
 use armctl_controller::yrcx::procedure::Procedure;
 use armctl_frame::face::shared_commands::CommonReport;

@@ -3,10 +3,8 @@
 use super::field_row::FieldRow;
 use super::refusal::refused;
 use super::{confirmed_write, link};
-use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_client::yrcx::Reply;
-use armctl_controller::user_input;
 use armctl_controller::yrcx::answer::Answer;
 use armctl_controller::yrcx::describe;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Words};

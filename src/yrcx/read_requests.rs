@@ -1,12 +1,10 @@
 //! Several read requests, sent one after the other, because a controller executes one remote command at a time. Each
 //! request has its own result.
 
-use super::link::Link;
 use super::refusal::{object, refused};
 use crate::prelude::*;
-use armctl_controller::yrcx::alarm::{Alarm, STOP_INPUT};
+use armctl_controller::yrcx::alarm::STOP_INPUT;
 use armctl_controller::yrcx::value::Value;
-use armctl_frame::dry_run::unknown;
 
 /// Results of several requests, in the order of the requests.
 #[derive(Debug)]

@@ -1,8 +1,8 @@
 //! Conversion of commands that armctl rejected or the controller refused to failures.
 
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_client::yrcx::Refusal;
-use armctl_controller::yrcx::alarm::{Alarm, STOP_INPUT};
+use armctl_controller::yrcx::alarm::STOP_INPUT;
 use armctl_controller::yrcx::codec::WordError;
 use armctl_controller::yrcx::table::{DurationClass, Row};
 use armctl_controller::yrcx::value::Value;

@@ -1,10 +1,8 @@
 //! Settings of a robot that can be read and written, as a table.
 
-use super::link::{Link, Yrcx};
 use super::read_requests::{ask_each, is_undefined};
 use super::single_command::format_field;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::table::Command;
 use armctl_controller::yrcx::value::Value;
 use armctl_frame::robot::item::Plain;

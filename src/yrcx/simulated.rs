@@ -1,17 +1,12 @@
 //! Simulated controller for a simulator URL.
 
-use std::path::Path;
-
-use anyhow::Context as _;
-
+use crate::prelude::basics::*;
 pub use armctl_client::yrcx::Simulated;
 use armctl_controller::simulator::run_options::RunOptions;
 use armctl_controller::yrcx::simulator::Start;
-use armctl_files as files;
 use armctl_frame::backup::recording::with_replay;
 use armctl_frame::backup::twin;
-use armctl_frame::failure::Failure;
-use armctl_frame::settings::target::{Family, Sim};
+use armctl_frame::settings::target::Sim;
 use armctl_transport::fault::{FaultNames, FaultText, SimulatorFaults};
 
 /// Creates a simulator in this process, with the start state that the URL names.

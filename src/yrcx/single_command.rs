@@ -2,8 +2,6 @@
 
 use super::confirmed_write::{self, StoredReport};
 use super::link::CommandResult;
-use super::link::Yrcx;
-use super::refusal::BuildOrder as _;
 use crate::prelude::*;
 
 /// A command line that sends one row of the command table.

@@ -1,16 +1,12 @@
 //! `yrcx status`: the dedicated outputs, servos and position.
 
 use super::info::{AxisServo, servos};
-use super::link::Link;
-use super::link::Yrcx;
 use super::overview::{alarm, latest, not_asked, state};
 use super::position::{Unit, mm, position};
 use super::read_requests::{ask_each, plan_each};
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::answer::Status as CommandStatus;
 use armctl_frame::items::{ItemError, verdict};
-use armctl_frame::output::csv::RowsOf;
 use armctl_frame::robot::position::{Joint, joint_table};
 use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
 

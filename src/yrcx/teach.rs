@@ -1,11 +1,8 @@
 //! `yrcx teach` (4.2.9): stores the current position as a point. `point set 19 here` is an alias.
 
 use super::confirmed_write::{self, confirmation, read_current};
-use super::link::{Link, Yrcx};
 use super::position::{Unit, group, position, unit_of};
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::teach::{TeachReport, mismatch, unverified};
 
 /// Stores the current position as a point, replaces the old point, and reads the point back.

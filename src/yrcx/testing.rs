@@ -3,17 +3,12 @@
 
 use std::collections::VecDeque;
 use std::fmt::Debug;
-use std::time::Duration;
 
-use serde_json::Value;
-
-use super::link::{Link, Yrcx};
 use super::unit_argument::Unit;
 use crate::prelude::*;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Words};
 use armctl_controller::yrcx::table::Row;
 use armctl_frame::face::Face;
-use armctl_frame::face::registration::Registered;
 use armctl_frame::gate::Grant;
 use armctl_frame::output::{ColorChoice, Format};
 use armctl_frame::testing;
@@ -172,7 +167,7 @@ pub(super) struct Bench {
 }
 
 /// Controller that the link and the test share.
-type SharedController = std::sync::Arc<std::sync::Mutex<Scripted>>;
+type SharedController = Arc<std::sync::Mutex<Scripted>>;
 
 #[derive(Debug)]
 struct Handle(SharedController);
@@ -285,7 +280,7 @@ impl Bench {
     /// Closes the link and returns the controller.
     pub(super) fn into_peer(self) -> Scripted {
         self.runtime.block_on(Yrcx::close(self.link, &quiet())).expect("it closes");
-        std::sync::Arc::into_inner(self.peer).expect("the link is gone").into_inner().unwrap()
+        Arc::into_inner(self.peer).expect("the link is gone").into_inner().unwrap()
     }
 }
 
@@ -424,7 +419,7 @@ impl ImagePeer for Scripted {
 }
 
 /// The family.
-const FACE: &dyn Face = &Registered::<Yrcx>::FACE;
+const FACE: &Face = &Face::of::<Yrcx>();
 
 /// Robot and command of a line.
 pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {

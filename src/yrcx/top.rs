@@ -5,16 +5,12 @@
 //! All clients of a session share the remote commands of the controller, and only one command can run at a time. So in
 //! a session, a view sends one remote command per interval and keeps the results.
 
-use std::time::Duration;
-
 use tokio::time::Instant;
 
 use super::info::servos;
-use super::link::{Link, Yrcx};
 use super::overview::{alarm, latest, not_asked, report};
 use super::position::mm;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::answer::Status;
 use armctl_controller::yrcx::table::Command;
 use armctl_frame::Family as _;

@@ -1,16 +1,12 @@
 //! Trace of images: as text when an image changes, or as a capture file with every packet.
 
 use std::collections::VecDeque;
-use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, SyncSender};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Duration;
 
-use anyhow::Context as _;
-
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::text::hex;
 use armctl_controller::yrcx::image_changes::changes;
 use armctl_frame::trace;

@@ -6,7 +6,6 @@ use super::link;
 use super::number_arguments::{named, single};
 use super::numbered_tables::{Kind, Numbered};
 use super::single_command::{SingleCommand, single_command};
-use crate::complete;
 use crate::prelude::*;
 use armctl_controller::names;
 use armctl_controller::yrcx::value::Value;

@@ -1,7 +1,5 @@
 //! `armctl completions SHELL`.
 
-use clap::ValueEnum;
-
 use armctl_frame::prelude::*;
 
 /// Print a completion script.

@@ -1,10 +1,7 @@
 //! `armctl man`: man pages, one per noun.
 
-use std::collections::BTreeSet;
 use std::io::{self, Write as _};
-use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
 use clap::Command;
 
 use super::{environment, page};

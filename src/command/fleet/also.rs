@@ -3,12 +3,9 @@
 
 use std::rc::Rc;
 
-use clap::Args;
-
 use super::poll::Extra;
 use super::publish::topic;
-use armctl_frame::failure::Failure;
-use armctl_frame::settings::target::Family;
+use armctl_frame::prelude::*;
 
 /// The flag for extra commands.
 #[derive(Debug, Args)]

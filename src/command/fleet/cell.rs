@@ -2,15 +2,12 @@
 
 use std::ffi::OsString;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use clap::{Args, ValueHint};
+use clap::ValueHint;
 use toml_edit::{Table as TomlTable, value};
 
 use crate::command::families;
 use armctl_controller::simulator::run_options::Speed;
-use armctl_files as files;
 use armctl_frame::SchemaEntry;
 use armctl_frame::backup::manifest::{self, Manifest};
 use armctl_frame::backup::recording::{self, Head, Recorded};
@@ -18,9 +15,7 @@ use armctl_frame::local_names::Target;
 use armctl_frame::prelude::*;
 use armctl_frame::serve;
 use armctl_frame::settings::document::Document;
-use armctl_frame::settings::duration;
 use armctl_frame::settings::inventory::{Inventory, is_name};
-use armctl_frame::settings::target::Family;
 
 /// Simulators for the robots of a backup.
 #[derive(Debug, Args)]
@@ -196,7 +191,7 @@ impl SavedRobot {
             arguments.extend(["--replay".into(), recording.into()]);
             arguments.extend(pass.map(|pass| format!("--loop={}", duration::display(pass)).into()));
         }
-        families::of(self.family).serve(self.name.clone(), arguments).await
+        (families::of(self.family).serve)(self.name.clone(), arguments).await
     }
 
     fn recording_path(&self) -> Option<PathBuf> {
@@ -230,7 +225,7 @@ impl SavedRobot {
         Ok(table)
     }
 
-    fn damaged(&self, why: &dyn std::fmt::Display) -> Failure {
+    fn damaged(&self, why: &dyn fmt::Display) -> Failure {
         Failure::local(format!("{}: `inventory` is damaged: {why}", self.folder.join(manifest::MANIFEST).display()))
             .hint("remove `inventory` from the manifest.json")
     }

@@ -1,20 +1,15 @@
 //! `armctl report`: an archive for a bug report: versions, check, settings, state, alarms, recent frames.
 
-use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
-use std::path::PathBuf;
 
-use anyhow::Context as _;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use jiff::Zoned;
-use serde_json::{Value, json};
 
 use crate::command::fleet::robots::Shown;
 use crate::command::fleet::robots::check::{CheckReport, Checked};
 use crate::command::fleet::status::{Fleet, Link};
-use armctl_files as files;
 use armctl_frame::face::overview::OverviewReport;
 use armctl_frame::local_names::{Target, make_folder};
 use armctl_frame::output::envelope::ErrorBody;
@@ -49,11 +44,8 @@ impl Command for Pack {
     type Family = Checked;
     type Report = Packed;
     const ID: &'static str = "report";
+    const USES_FILES: bool = true;
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
-
-    fn uses_files(&self) -> bool {
-        true
-    }
 
     async fn run(&self, context: Context<'_, Checked>) -> Result<Packed, Failure> {
         let Context { robot, screen, .. } = context;
@@ -113,8 +105,8 @@ async fn read_state(robot: &Robot, access: Access, screen: &Screen) -> (Value, V
         Ok(Link::Absent(absent)) => return (failed(absent.failure.clone()), failed(absent.failure)),
         Err(failure) => return (failed(failure.clone()), failed(failure)),
     };
-    let status = face.overview(&mut *connection).await;
-    let alarms = face.alarms(&mut *connection).await;
+    let status = (face.overview)(&mut *connection).await;
+    let alarms = (face.alarms)(&mut *connection).await;
     // The archive does not depend on how the connection ends.
     let _ = connection.close(screen).await;
     (

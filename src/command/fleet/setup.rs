@@ -9,7 +9,7 @@ use armctl_frame::interrupt::{catch_interrupts, interruptible};
 use armctl_frame::output::render;
 use armctl_frame::prelude::*;
 use armctl_frame::prompt::ask;
-use armctl_frame::settings::target::{Family, Target, TargetArgument};
+use armctl_frame::settings::target::{Target, TargetArgument};
 
 /// Asks for address, name and access rights, checks the connection, and writes robots.toml.
 #[derive(Debug, Args)]
@@ -145,7 +145,7 @@ async fn simulator(run: &Run) -> Result<FoundTarget, Failure> {
         "Address of a simulator that runs (`armctl sim {family}`), or `sim:` for the built-in \
                             simulator"
     );
-    let input = line(run, question, Some(families::of(family).simulator())).await?;
+    let input = line(run, question, Some(families::of(family).simulator)).await?;
     ask_missing_parts(run, &input.parse()?, Some(family)).await
 }
 
@@ -165,9 +165,9 @@ async fn ask_missing_parts(run: &Run, given: &TargetArgument, known: Option<Fami
 }
 
 async fn family(run: &Run) -> Result<Family, Failure> {
-    let titles = FAMILIES.map(|face| format!("{} ({})", face.title(), face.family()));
+    let titles = FAMILIES.map(|face| format!("{} ({})", face.title, face.family));
     let at = choice(run, "Which controller is it?", titles.into()).await?;
-    FAMILIES.get(at).map(|face| face.family()).ok_or_else(|| Failure::local("internal error: no such family"))
+    FAMILIES.get(at).map(|face| face.family).ok_or_else(|| Failure::local("internal error: no such family"))
 }
 
 /// Checks each layer and shows it. Returns whether all layers succeeded.
@@ -175,7 +175,7 @@ async fn check(run: &Run, found: &FoundTarget) -> Result<bool, Failure> {
     let robot = run.sources.at(&found.target, found.family)?;
     let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Explicit) };
     run.begin_trace()?;
-    let layers = interruptible(families::of(found.family).check(&robot, access, &run.screen)).await??;
+    let layers = interruptible((families::of(found.family).check)(&robot, access, &run.screen)).await??;
     let table = render::text(&View::table(layers::table(&layers)), run.screen.width(), false);
     run.screen.ask_note(&format!("\n{}", table.trim_end()));
     Ok(layers::first_failed(&layers).is_none())

@@ -1,9 +1,6 @@
 //! `armctl status`: one line per robot of any family.
 
-use std::collections::BTreeMap;
-
 use crate::command::families;
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::dry_run::Plan;
 use armctl_frame::face::Face;
 use armctl_frame::face::overview::OverviewReport;
@@ -22,7 +19,7 @@ pub struct Fleet;
 /// A connection to a robot of any family.
 pub enum Link {
     /// An open connection with the face of its family.
-    Open(&'static dyn Face, Box<dyn Connection>),
+    Open(&'static Face, Box<dyn Connection>),
     /// No connection, with the reason.
     Absent(Box<Absent>),
 }
@@ -48,7 +45,7 @@ impl Link {
         match Fleet::connect(&robot, access.clone(), screen).await? {
             Self::Absent(again) => absent.failure = again.failure,
             Self::Open(face, connection) => {
-                let driver = face.driver();
+                let driver = face.driver;
                 if !can_share(driver, &robot) {
                     *self = Self::Open(face, connection);
                     return Ok(());
@@ -70,7 +67,7 @@ impl Family for Fleet {
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
         let face = families::of(robot.family);
-        match face.driver().connect(robot, access.clone(), screen).await {
+        match (face.driver.connect)(robot, access.clone(), screen).await {
             Ok(connection) => Ok(Link::Open(face, connection)),
             // A robot that does not answer gets a line in the table as well.
             Err(failure) if failure.kind == Kind::NoAnswer => {
@@ -95,15 +92,15 @@ impl Family for Fleet {
     }
 
     fn connection_effect(robot: &Robot, mode: ConnectMode) -> ConnectionEffect {
-        families::of(robot.family).driver().connection_effect(robot, mode)
+        (families::driver(robot).connection_effect)(robot, mode)
     }
 
     fn takes_one_client(robot: &Robot) -> bool {
-        families::of(robot.family).driver().takes_one_client(robot)
+        (families::driver(robot).takes_one_client)(robot)
     }
 
     fn addresses(robot: &Robot) -> Result<Vec<target::Address>, Failure> {
-        families::of(robot.family).driver().addresses(robot)
+        (families::driver(robot).addresses)(robot)
     }
 
     async fn close(link: Link, screen: &Screen) -> Result<(), Failure> {
@@ -131,7 +128,7 @@ impl Command for Overview {
     async fn run(&self, context: Context<'_, Fleet>) -> Result<OverviewReport, Failure> {
         let found = match context.link.open_link(context.screen).await {
             Ok(()) => match context.link {
-                Link::Open(face, connection) => face.overview(&mut **connection).await,
+                Link::Open(face, connection) => (face.overview)(&mut **connection).await,
                 Link::Absent(absent) => Err(absent.failure.clone()),
             },
             Err(failure) => Err(failure),

@@ -1,14 +1,11 @@
 //! `armctl wait`: waits until robots of any family are in a state.
 
-use std::time::Duration;
-
 use super::common::line::{Reading, SharedLine};
 use super::status::Overview;
 use armctl_frame::condition::{Comparison, Condition};
 use armctl_frame::face::overview::OverviewReport;
 use armctl_frame::prelude::*;
 use armctl_frame::run::{Repeat, as_value};
-use armctl_frame::settings::duration;
 use armctl_frame::{AnyCommand, SchemaEntry};
 
 const DEFAULT_INTERVAL: Duration = Duration::from_millis(200);

@@ -1,10 +1,5 @@
 //! `armctl backup --verify`: integrity check of the files of a backup.
 
-use std::path::Path;
-
-use serde_json::Value;
-
-use crate::Report;
 use crate::backup::manifest;
 use crate::backup::manifest::MANIFEST;
 use crate::prelude::basics::*;

@@ -1,23 +1,17 @@
 //! Comparison of two backups of a family, file by file.
 
 use std::io::Read as _;
-use std::path::{Path, PathBuf};
-
-use anyhow::Context as _;
 
 use super::job_date::{DATE_LINE, align_files};
 use super::tolerance::Tolerance;
-use crate::Report;
 use crate::backup::manifest::{Entry, Manifest, Saved};
 use crate::backup::text_diff::{Change, Hunk, MAX_TEXT, TextDifference, unified};
 use crate::backup::{Only, severity};
 use crate::items::ItemError;
-use crate::output::csv::RowsOf;
 use crate::output::escape;
 use crate::prelude::basics::*;
 use crate::robot::file::{FILES, FileItem};
 use armctl_controller::text::Encoding;
-use armctl_files as files;
 
 /// One side of a comparison.
 #[derive(Debug)]
@@ -172,8 +166,8 @@ impl Differences {
     }
 }
 
-impl std::fmt::Display for SideReport {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for SideReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.folder {
             Some(folder) => f.write_str(folder),
             None => write!(f, "the controller of {}", self.robot),

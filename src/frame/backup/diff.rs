@@ -1,10 +1,6 @@
 //! Options of a comparison of two backups, or a backup and a controller. A controller is read into a temporary
 //! folder.
 
-use std::path::{Path, PathBuf};
-
-use anyhow::Context as _;
-
 use super::compare::{BackupSide, CompareOptions, Differences};
 use super::manifest;
 use super::tolerance::{Limit, Tolerance};

@@ -1,9 +1,6 @@
 //! `backup`, `restore` and `diff` commands, for robots of any family and for each family.
 
 use std::marker::PhantomData;
-use std::path::{Path, PathBuf};
-
-use serde_json::Value;
 
 use super::arguments::{BackupOptions, RestoreOptions};
 use super::compare::Differences;
@@ -178,14 +175,11 @@ impl<F: Backups> Command for Diff<F> {
     type Family = F;
     type Report = Differences;
     const ID: &'static str = F::IDS[2];
+    const USES_FILES: bool = true;
     const RISK: Risk = F::BACKUP_RISK;
 
     fn risk_on(&self, robot: &Robot) -> Risk {
         F::backup_risk(robot)
-    }
-
-    fn uses_files(&self) -> bool {
-        true
     }
 
     fn takes_robot(&self) -> bool {

@@ -3,13 +3,11 @@
 use std::collections::HashSet;
 use std::fs;
 use std::io::{ErrorKind, Read as _};
-use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
 use jiff::Timestamp;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use serde_json::{Map, Value, json};
+use serde_json::Map;
 use sha2::{Digest as _, Sha256};
 
 use crate::local_names::{Target, is_plain_file_name};
@@ -17,9 +15,8 @@ use crate::output::escape;
 use crate::prelude::basics::*;
 use crate::settings::Origin;
 pub use crate::settings::target::MANIFEST;
-use crate::settings::target::{Family, MAX_MANIFEST};
+use crate::settings::target::MAX_MANIFEST;
 use armctl_controller::text::{hex, unhex};
-use armctl_files as files;
 
 /// Format name, for programs that find the folder.
 const FORMAT: &str = "armctl backup";

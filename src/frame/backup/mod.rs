@@ -14,19 +14,11 @@ pub mod text_diff;
 pub mod tolerance;
 pub mod twin;
 
-use std::fmt;
-use std::path::{Path, PathBuf};
-
-use serde_json::{Value, json};
-
-use super::Report;
 use super::backup::manifest::MANIFEST;
 use super::robot::file::{FILES, FileItem, Files, NO_DIFFERENCE};
 use crate::items::ItemError;
-use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
 use crate::settings::inventory::matches_pattern;
-use armctl_controller::similar_word::nearest;
 
 /// Selection of files or parts by name patterns; an empty list selects all.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

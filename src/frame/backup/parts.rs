@@ -1,8 +1,5 @@
 //! Restore of the parts that are tables: comparison with the controller, question, and writes.
 
-use std::fmt;
-use std::path::Path;
-
 use super::manifest::LeftOut;
 use crate::Family;
 use crate::interrupt::interruptible;

@@ -4,18 +4,12 @@
 //! that differ from the poll before. A simulator replays these answers.
 
 use std::io::{BufRead as _, BufReader, Read as _};
-use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use anyhow::Context as _;
 use serde::Deserialize;
 
 use super::manifest::Manifest;
 use crate::prelude::basics::*;
-use crate::settings::duration;
-use crate::settings::target::Family;
 use armctl_controller::simulator::recording::{Answers, Recording, Replayable, Sample};
-use armctl_files as files;
 
 /// Name of the file.
 pub const FILE: &str = "recording.jsonl";
@@ -85,7 +79,7 @@ impl Head {
             version: VERSION,
             interval_ms: u64::try_from(interval.as_millis()).unwrap_or(u64::MAX),
             model: model.map(|model| model.name().to_owned()),
-            manifest: Manifest::new(robot, serde_json::Value::Null, Vec::new()),
+            manifest: Manifest::new(robot, Value::Null, Vec::new()),
         }
     }
 

@@ -1,10 +1,6 @@
 //! Backup procedure of all families. Complete parts are kept, each part has its own result, and the manifest always
 //! shows the progress. A family supplies the list of parts and the code that reads them.
 
-use std::path::{Path, PathBuf};
-use std::time::Duration;
-
-use serde_json::Value;
 use tokio::time::Instant;
 
 use super::manifest::{self, About, Entry, Hash, LeftOut, MANIFEST, Manifest, Reason, Saved};

@@ -4,11 +4,7 @@
 //! frames, so there is no second list of the data of a family.
 
 use std::any::Any;
-use std::path::Path;
 use std::sync::OnceLock;
-
-use futures_util::FutureExt as _;
-use serde_json::Value;
 
 use super::manifest::{self, Manifest};
 use super::parts::Table;

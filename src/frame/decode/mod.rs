@@ -5,14 +5,11 @@ pub mod capture;
 
 use std::io::{self, BufRead as _, Read as _};
 
-use anyhow::Context as _;
-
 use self::capture::{CaptureDecoder, Input, Selection};
-use super::{Report, SchemaEntry};
+use super::SchemaEntry;
 use crate::output::{Format, render};
 use crate::prelude::basics::*;
 use crate::run::{Run, RunError};
-use armctl_files as files;
 
 /// Arguments of `armctl decode FAMILY`: bytes to decode, or a capture file.
 pub trait Decode {

@@ -1,9 +1,6 @@
 //! Arguments of a command that draws a motion.
 
 use std::marker::PhantomData;
-use std::path::{Path, PathBuf};
-
-use clap::ValueEnum;
 
 use super::report::PathReport;
 use super::{Drawing, html, svg};

@@ -4,9 +4,7 @@ use regex_bites::{Regex, RegexBuilder, escape};
 
 use super::Program;
 use crate::items::{self, ItemError};
-use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
-use crate::report::Report;
 use armctl_controller::references::{Reference, Role};
 
 /// Arguments of a search.

@@ -1,8 +1,6 @@
 //! Settings of a check: rules that are off, limits, and programs that are ignored, in `.armctl-check.toml`.
 
-use std::collections::BTreeMap;
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -12,8 +10,6 @@ use crate::backup::tolerance::Limit;
 use crate::prelude::basics::*;
 use crate::settings::inventory::{line_and_column, matches_pattern, suggestion};
 use armctl_controller::findings::{Finding, Rule};
-use armctl_controller::similar_word::nearest;
-use armctl_files as files;
 
 /// Name of the file. It is searched in the folder that is checked, then in the current folder.
 pub const FILE: &str = ".armctl-check.toml";

@@ -1,15 +1,10 @@
 //! Source of programs: a backup, or another folder with program files. A family reads the programs of a controller into
 //! the same [`ProgramSet`].
 
-use std::path::Path;
-
-use anyhow::Context as _;
-
 use crate::backup::manifest::{self, About, Manifest};
 use crate::items::ItemError;
 use crate::prelude::basics::*;
 use crate::text_files;
-use armctl_controller::similar_word::nearest;
 
 /// A program file: a job, or a sequential program.
 #[derive(Debug, Clone, PartialEq, Eq)]

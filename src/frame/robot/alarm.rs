@@ -1,11 +1,9 @@
 //! Alarms and errors: common keys of `alarm list` and `alarm history` in every family, `explain`, `top` and topics.
 
-use crate::Report;
 use crate::face::shared_commands::CommonReport;
 use crate::items::{ItemError, ItemOutcome, verdict};
 use crate::prelude::basics::*;
 use crate::settings::alarms::Explanation;
-use crate::settings::target::Family;
 
 /// An alarm or error. A field is null if the protocol does not report it, or if its value is unknown.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]

@@ -3,14 +3,9 @@
 //! Reports have `files[]` with `name`, `bytes`, `sha256`, `path`, `ok` and, after a failure, `error`. Each file has its
 //! own result. Parts of a backup, such as `points-1`, are files.
 
-use std::fmt;
-use std::path::Path;
-
-use crate::Report;
 use crate::backup::manifest::{Hash, LeftOut, Saved};
 use crate::backup::{continues_after, severity};
 use crate::items::ItemError;
-use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
 
 /// A file.

@@ -1,6 +1,5 @@
 //! Signals: common keys of `io get|set|list|watch` in every family, and of `armctl io`.
 
-use crate::Report;
 use crate::items::{ItemError, all_failed, verdict};
 use crate::prelude::basics::*;
 use crate::watch::Watched;
@@ -245,10 +244,8 @@ impl Report for WrittenSignals {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
-    use crate::failure::Kind;
 
     fn item(label: Option<&str>) -> IoItem {
         let (name, address) = ("IN1.3".to_owned(), "PN01.3".to_owned());

@@ -3,9 +3,7 @@
 //! Reads report `items[]` with `name`, `label`, `kind`, `ok`, `value` and, after a failure, `error`. Writes also
 //! report `old`, `new` and `written`. Each item has its own result.
 
-use crate::Report;
 use crate::items::{ItemError, verdict};
-use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
 
 /// No family-specific fields.

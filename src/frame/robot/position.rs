@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 
 use schemars::{Schema, SchemaGenerator};
 
-use crate::Report;
 use crate::face::shared_commands::CommonReport;
 use crate::items::{ItemError, verdict};
 use crate::plot::{Plot, SeriesHistory};
@@ -331,7 +330,6 @@ impl Report for AllPositions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::failure::Kind;
     use crate::output::csv::Sheet;
     use crate::output::render;
     use crate::report::sheet_of;

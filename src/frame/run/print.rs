@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 
 use jiff::Timestamp;
-use serde_json::Value;
 
 use super::failure_log::RoundFailures;
 use super::{Run, RunError};
@@ -411,7 +410,6 @@ pub fn as_value(value: &impl Serialize) -> Result<Value, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::failure::Kind;
     use crate::settings::Sources;
     use crate::settings::inventory::Inventory;
 

@@ -1,14 +1,11 @@
 //! Rounds of a repeated read.
 
-use std::time::Duration;
-
 use tokio::time::{Instant, timeout_at};
 
 use super::print::as_value;
 use crate::condition::Condition;
 use crate::interrupt::interruptible;
 use crate::prelude::basics::*;
-use crate::settings::duration;
 
 /// Minimum time of each read, even if `--for` ends earlier. Otherwise a robot that answers at once could count as a
 /// robot that does not answer.
@@ -154,7 +151,6 @@ impl<'a> Rounds<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::target::Family;
     use crate::settings::{Sources, target};
 
     fn robot() -> Robot {

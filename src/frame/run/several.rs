@@ -1,6 +1,6 @@
 //! A command for several robots. It runs in parallel, with one connection for each robot.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::failure_log::RoundFailures;
 use super::print::{ReportPosition, envelopes, with_robot_name, with_time};

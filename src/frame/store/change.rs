@@ -1,9 +1,8 @@
 //! Write of rows: reads the old rows, confirms the changes, and writes the rows that differ. Each row has its own
 //! result.
 
-use super::{Answers, RowDifference, Store, Writable, WrittenOf, columns, item};
+use super::{Answers, LinkOf, RowDifference, Store, Writable, WrittenOf, columns, item};
 use crate::confirmation::Confirmer;
-use crate::connection::Family;
 use crate::dry_run::{Known as _, unknown};
 use crate::interrupt::interruptible;
 use crate::items::describe_request;
@@ -35,7 +34,7 @@ pub struct TableWrite<'a, S: Store> {
     /// Robot.
     pub robot: &'a Robot,
     /// Connection to the robot.
-    pub link: &'a mut <S::Family as Family>::Link,
+    pub link: &'a mut LinkOf<S>,
     /// Screen for progress and notes.
     pub screen: &'a Screen,
     /// Authority that confirms the overwriting of user data.
@@ -106,7 +105,7 @@ pub async fn write<S: Writable>(work: TableWrite<'_, S>, rows: Vec<Row<S>>) -> R
 /// Compares rows with the controller, asks the user to confirm, and writes the rows that differ.
 pub async fn write_rows<S: Writable>(
     table: &S,
-    link: &mut <S::Family as Family>::Link,
+    link: &mut LinkOf<S>,
     screen: &Screen,
     confirmer: Confirmer<'_>,
     rows: Vec<Row<S>>,
@@ -127,7 +126,7 @@ pub async fn write_rows<S: Writable>(
 /// If a read fails. The failure states that nothing was written.
 pub async fn compare<S: Writable>(
     table: &S,
-    link: &mut <S::Family as Family>::Link,
+    link: &mut LinkOf<S>,
     screen: &Screen,
     rows: &[Row<S>],
 ) -> Result<Option<Vec<ComparedRow<S>>>, Failure> {
@@ -194,12 +193,7 @@ pub fn overwriting<S: Writable>(table: &S, lost: &[[String; 3]]) -> Change {
 }
 
 /// Writes the rows that differ, and records the result of each row.
-pub async fn write_each<S: Writable>(
-    table: &S,
-    link: &mut <S::Family as Family>::Link,
-    screen: &Screen,
-    rows: &mut [ComparedRow<S>],
-) {
+pub async fn write_each<S: Writable>(table: &S, link: &mut LinkOf<S>, screen: &Screen, rows: &mut [ComparedRow<S>]) {
     let differing: Vec<usize> = (0..rows.len()).filter(|index| rows[*index].is_different()).collect();
     let blocks = table.blocks(&changes(rows, &differing));
     let mut progress = (differing.len() > 1)

@@ -1,14 +1,12 @@
 //! `dump` and `restore`: save rows to a CSV file for spreadsheets, and write them back.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
 
 use super::change::{Row, TableWrite, confirmation, intent, write};
 use super::get::{Rows, defined};
 use super::{Store, Writable, WrittenOf, read, read_keys, sheet};
 use crate::items::{ItemError, verdict};
 use crate::prelude::basics::*;
-use crate::report::Report;
 use crate::robot::item::as_requested;
 use crate::table_file::SheetManner;
 use crate::text_files;

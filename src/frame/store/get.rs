@@ -7,7 +7,6 @@ use crate::prelude::basics::*;
 use crate::robot::item::{Item, Items};
 use crate::watch::{Watchable, Watched};
 use crate::{Command, Context};
-use armctl_controller::user_input;
 
 /// Row arguments, after parsing.
 #[derive(Debug)]

@@ -139,6 +139,9 @@ macro_rules! table_commands {
 }
 pub use table_commands;
 
+/// Connection to the controller of a table.
+pub type LinkOf<S> = <<S as Store>::Family as Family>::Link;
+
 /// Results of rows. Each result is the content, `None` if the row is not defined, or the reason why the row was not
 /// read.
 #[derive(Debug)]
@@ -240,14 +243,10 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
 
     /// Reads the information that is needed before a row is read or written, such as the axis letters. It changes
     /// nothing.
-    async fn open(link: &mut <Self::Family as Family>::Link, options: &Self::Options) -> Result<Self, Failure>;
+    async fn open(link: &mut LinkOf<Self>, options: &Self::Options) -> Result<Self, Failure>;
 
     /// Reads the information that is needed before these rows are read, or parsed from a file.
-    async fn prepare(
-        &mut self,
-        _link: &mut <Self::Family as Family>::Link,
-        _keys: &[Self::Key],
-    ) -> Result<(), Failure> {
+    async fn prepare(&mut self, _link: &mut LinkOf<Self>, _keys: &[Self::Key]) -> Result<(), Failure> {
         Ok(())
     }
 
@@ -257,16 +256,12 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     }
 
     /// Selects this table, if the controller has several tables.
-    async fn select(&mut self, _link: &mut <Self::Family as Family>::Link) -> Result<(), Failure> {
+    async fn select(&mut self, _link: &mut LinkOf<Self>) -> Result<(), Failure> {
         Ok(())
     }
 
     /// Restores the table that was selected before [`select`](Self::select), also after a failure.
-    async fn deselect<T>(
-        &self,
-        _link: &mut <Self::Family as Family>::Link,
-        outcome: Result<T, Failure>,
-    ) -> Result<T, Failure> {
+    async fn deselect<T>(&self, _link: &mut LinkOf<Self>, outcome: Result<T, Failure>) -> Result<T, Failure> {
         outcome
     }
 
@@ -350,7 +345,7 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     /// If a failure occurs before any row was read.
     async fn read(
         &self,
-        link: &mut <Self::Family as Family>::Link,
+        link: &mut LinkOf<Self>,
         screen: &Screen,
         keys: &[Self::Key],
     ) -> Result<Answers<Self::Wire>, Failure>;
@@ -405,7 +400,7 @@ pub trait Writable: Store {
     /// As [`read`](Store::read).
     async fn read_old(
         &self,
-        link: &mut <Self::Family as Family>::Link,
+        link: &mut LinkOf<Self>,
         screen: &Screen,
         rows: &[Row<Self>],
     ) -> Result<Answers<Self::Wire>, Failure> {
@@ -419,12 +414,12 @@ pub trait Writable: Store {
     }
 
     /// In a dry run, records the requests that write rows and read them back.
-    async fn plan(&self, link: &mut <Self::Family as Family>::Link, rows: &[Row<Self>]) -> Result<(), Failure>;
+    async fn plan(&self, link: &mut LinkOf<Self>, rows: &[Row<Self>]) -> Result<(), Failure>;
 
     /// Writes the rows of a [block](Self::blocks).
     async fn write(
         &self,
-        link: &mut <Self::Family as Family>::Link,
+        link: &mut LinkOf<Self>,
         screen: &Screen,
         rows: &[RowDifference<'_, Self>],
     ) -> Result<(), Failure>;
@@ -494,7 +489,7 @@ pub fn difference<S: Store>(table: &S, old: &S::Wire, new: &S::Wire) -> [String;
 /// Selects the table, reads rows, and selects the previous table again.
 async fn read<S: Store>(
     table: &mut S,
-    link: &mut <S::Family as Family>::Link,
+    link: &mut LinkOf<S>,
     screen: &Screen,
     keys: &[S::Key],
 ) -> Result<Answers<S::Wire>, Failure> {

@@ -2,12 +2,10 @@
 
 use std::fmt::Debug;
 
-use futures_util::future::LocalBoxFuture;
-
 use super::change::{ComparedRow, Row, compare, differing, replaced, write_each};
 use super::file::{Answer, LeftOut, SavedRows, leave_out_unused, parse};
 use super::get::defined;
-use super::{Store, Writable, read, sheet};
+use super::{LinkOf, Store, Writable, read, sheet};
 use crate::connection::Family;
 use crate::prelude::basics::*;
 use armctl_controller::findings::{Finding, Findings};
@@ -212,7 +210,7 @@ impl<S: Writable> TablePart<S::Family> for Part<S> {
 
     fn read<'t>(
         &'t mut self,
-        link: &'t mut <S::Family as Family>::Link,
+        link: &'t mut LinkOf<S>,
         screen: &'t Screen,
     ) -> LocalBoxFuture<'t, Result<Text, Failure>> {
         Box::pin(async move {
@@ -225,7 +223,7 @@ impl<S: Writable> TablePart<S::Family> for Part<S> {
 
     fn compare<'t>(
         &'t mut self,
-        link: &'t mut <S::Family as Family>::Link,
+        link: &'t mut LinkOf<S>,
         screen: &'t Screen,
     ) -> LocalBoxFuture<'t, Result<(), Failure>> {
         Box::pin(async move {
@@ -258,7 +256,7 @@ impl<S: Writable> TablePart<S::Family> for Part<S> {
 
     fn write<'t>(
         &'t mut self,
-        link: &'t mut <S::Family as Family>::Link,
+        link: &'t mut LinkOf<S>,
         screen: &'t Screen,
     ) -> LocalBoxFuture<'t, Result<PartResult, Failure>> {
         Box::pin(async move {

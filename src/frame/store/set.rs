@@ -8,7 +8,6 @@ use super::{Store, Writable, WrittenOf, read_keys};
 use crate::prelude::basics::*;
 use crate::robot::item::as_requested;
 use crate::{Command, Context};
-use armctl_controller::similar_word::nearest;
 
 /// A row, and its new content.
 #[derive(Debug, Args)]

@@ -1,20 +1,17 @@
 //! Conversion between the data of a controller and the text files of a backup.
 
-use std::path::Path;
-
 use super::manifest::Controller;
 use super::parts::Part;
 use crate::easy::Numbered;
 use crate::eeprom_tables::Rows as TableRows;
 use crate::field_values::NOT_IN_MANUAL;
-use crate::link::{Link, Toyo};
 use crate::palletizing::Records;
 use crate::param::{Parameters, is_machine};
 use crate::point::Points;
 use crate::prelude::*;
 use crate::program::table::Steps;
-use crate::program::{steps, text};
-use crate::{files, number_arguments, task_selection};
+use crate::program::text;
+use crate::{files, number_arguments};
 use armctl_client::toyo::letters_request;
 use armctl_controller::findings::Finding;
 use armctl_controller::toyo::field::Field;

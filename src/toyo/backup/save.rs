@@ -3,15 +3,11 @@
 use super::content::{self, Text};
 use super::manifest::Controller;
 use super::parts::Part;
-use crate::link::Link;
-use crate::link::Toyo;
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_frame::backup::arguments::BackupOptions;
 use armctl_frame::backup::manifest::Entry;
 use armctl_frame::backup::save::{self, Task, interrupted_failure};
 use armctl_frame::backup::{BackupReport, Only, SaveOptions};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::file::FileItem;
 
 /// Save all data of a controller to a folder of text files.

@@ -1,11 +1,8 @@
 //! Start state of a simulator from a backup.
 
-use std::path::Path;
-
 use super::content::{Content, Table};
 use super::manifest::Manifest;
 use super::parts::Part;
-use crate::link::Toyo;
 use crate::prelude::*;
 use armctl_controller::toyo::simulator::Start;
 use armctl_controller::toyo::table::parameters::PARAMETERS;

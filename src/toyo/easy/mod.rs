@@ -4,7 +4,6 @@ mod progress;
 
 use super::eeprom::Cell;
 use super::eeprom_tables::{self, Rows, WRITING};
-use super::link::wrong;
 use super::programs::{Copy, Kind, Select};
 use crate::prelude::*;
 use armctl_controller::toyo::field;
@@ -40,11 +39,14 @@ pub struct Numbered;
 
 impl Kind for Numbered {
     const TYPE_NAME: &'static str = "easy program";
-    const IDS: [&'static str; 2] = ["toyo.easy.copy", "toyo.easy.select"];
+    const WORD: &'static str = "easy";
+    const IDS: [&'static str; 3] = ["toyo.easy.copy", "toyo.easy.select", "toyo.run.easy"];
+    const COUNT: i64 = 8;
     const INTENT: &'static str = "overwrite an easy program";
     const HELP: [&'static str; 3] = ["Program to copy, 1 to 8", "Program to replace, 1 to 8", "Program, 1 to 8"];
     const RUN: &'static str = "toyo run easy";
-    const COMMANDS: [Command; 3] = [Command::Cesy, Command::Sesn, Command::Resd];
+    const COMMANDS: [Command; 4] = [Command::Cesy, Command::Sesn, Command::Resd, Command::Sesy];
+    const RUN_HELP: Option<&'static str> = Some("Parameter M10 selects easy mode: `armctl toyo param set M10 E`.");
 
     fn field() -> &'static field::Field {
         key()

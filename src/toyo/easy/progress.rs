@@ -1,6 +1,5 @@
 //! `toyo easy progress`.
 
-use crate::link::Toyo;
 use crate::prelude::*;
 
 /// Show the progress of the running or selected easy program.

@@ -3,11 +3,7 @@
 use super::port::{Signal, SignalRange};
 use super::read::{read, row};
 use super::{BITS, Station, list};
-use crate::complete;
-use crate::link::Toyo;
 use crate::prelude::*;
-use armctl_controller::user_input;
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, Signals, WATCHED};
 use armctl_frame::watch;
 

@@ -3,9 +3,7 @@
 use super::port::{PortBank, Signal};
 use super::read::{read, row};
 use super::{BITS, Station};
-use crate::link::Toyo;
 use crate::prelude::*;
-use armctl_frame::names;
 use armctl_frame::robot::io::{Filter, IoRow, Signals};
 
 /// List all ports of a station, without ports that the controller refuses.

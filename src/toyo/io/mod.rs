@@ -14,7 +14,7 @@ mod set;
 
 pub(super) use port::{INPUTS, OUTPUTS, PortBank, ports_of};
 
-use crate::prelude::*;
+use crate::prelude::basics::*;
 
 commands! {
     /// Commands for signals.

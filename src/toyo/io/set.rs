@@ -2,18 +2,13 @@
 
 use std::str::FromStr;
 
-use super::super::link::{Link, wrong};
 use super::super::number_arguments::{number, read_back, read_back_mismatch};
 use super::super::refusal;
 use super::Station;
 use super::port::{OUTPUTS, Signal, name, ports_of};
-use crate::complete;
-use crate::link::Toyo;
 use crate::prelude::*;
 use armctl_controller::names::{Kind as NameKind, Names};
 use armctl_controller::toyo::field::{Field, Mask};
-use armctl_controller::user_input;
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, WrittenSignal, WrittenSignals};
 
 /// Set outputs. All bits of a port change at once; ports change in the typed order.

@@ -4,16 +4,13 @@ mod progress;
 
 use std::hash::{Hash, Hasher};
 
-use super::complete;
 use super::eeprom::Cell;
 use super::eeprom_tables::{EepromRow, Listed, is_zero, unlisted};
 use super::field_values::{self, NamedValue};
 use super::item_reads::read_each;
-use super::link::{Link, Toyo, wrong};
 use super::number_arguments;
 use super::programs::{Copy, Kind, Select};
 use crate::prelude::*;
-use armctl_controller::similar_word::nearest;
 use armctl_controller::toyo::field;
 use armctl_controller::toyo::layout::Layout;
 use armctl_controller::toyo::table::palletizing::RECORDS;
@@ -49,11 +46,13 @@ pub struct Numbered;
 
 impl Kind for Numbered {
     const TYPE_NAME: &'static str = "palletizing program";
-    const IDS: [&'static str; 2] = ["toyo.palletizing.copy", "toyo.palletizing.select"];
+    const WORD: &'static str = "palletizing";
+    const IDS: [&'static str; 3] = ["toyo.palletizing.copy", "toyo.palletizing.select", "toyo.run.palletizing"];
+    const COUNT: i64 = 16;
     const INTENT: &'static str = "overwrite a palletizing program";
     const HELP: [&'static str; 3] = ["Program to copy, 1 to 16", "Program to replace, 1 to 16", "Program, 1 to 16"];
     const RUN: &'static str = "toyo run palletizing";
-    const COMMANDS: [Command; 3] = [Command::Cppl, Command::Spln, Command::Rpld];
+    const COMMANDS: [Command; 4] = [Command::Cppl, Command::Spln, Command::Rpld, Command::Ppst];
 
     fn field() -> &'static field::Field {
         field()

@@ -1,6 +1,5 @@
 //! `toyo palletizing progress`.
 
-use crate::link::Toyo;
 use crate::prelude::*;
 
 /// Show the progress of the running or selected palletizing program.

@@ -6,15 +6,12 @@ pub use machine::{POWER_CYCLE, consequence_of};
 
 use std::hash::{Hash, Hasher};
 
-use super::complete;
 use super::eeprom::{Cell, parameter_cell, parameter_sketch};
 use super::eeprom_tables::{EepromRow, Listed, unlisted};
 use super::field_values::{self, NamedValue};
 use super::item_reads::{Answers as Records, read_each_with_retry};
-use super::link::{Link, Toyo, wrong};
 use super::number_arguments::Numbers;
 use crate::prelude::*;
-use armctl_controller::similar_word::nearest;
 use armctl_controller::toyo::layout::Layout;
 use armctl_controller::toyo::table::Group;
 use armctl_controller::toyo::table::parameters::PARAMETERS;

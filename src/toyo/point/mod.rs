@@ -4,15 +4,12 @@ mod teach;
 
 pub use teach::Teach;
 
-use std::path::Path;
-
-use super::eeprom::{Cell, parameter_cell, parameter_sketch};
-use super::eeprom_tables::{EepromRow, Listed, is_zero, texts, unlisted};
+use super::eeprom::{Cell, parameter_sketch};
+use super::eeprom_tables::{EepromRow, Listed, is_zero, row_cell, texts, unlisted};
+use super::field_values;
 use super::item_reads::{Answers as Records, read_each};
-use super::link::{Link, Toyo, wrong};
 use super::number_arguments::{Numbers, named, number};
 use super::position::{Coordinates, heading};
-use super::{complete, field_values, task_selection};
 use crate::prelude::*;
 use armctl_controller::names::Kind;
 use armctl_controller::toyo::field;
@@ -230,8 +227,7 @@ impl EepromRow for Points {
     }
 
     fn cell(&self, point: i32, values: Vec<Value>) -> Result<Cell, Failure> {
-        let values = std::iter::once(Value::Number(point)).chain(values).collect();
-        parameter_cell(table(), values).map_err(|error| wrong(&error))
+        row_cell(table(), point, values)
     }
 
     fn sketch(&self, point: i32, values: &[Option<Value>]) -> String {

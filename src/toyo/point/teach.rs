@@ -1,14 +1,11 @@
 //! Command `toyo teach`: stores the current position as a point. `point set 5 here` and `point teach 5` are aliases.
 
 use super::{AXES, Points, TaskOptions, parse_point};
-use crate::complete;
 use crate::eeprom_tables::EepromRow as _;
 use crate::field_values::Changes;
-use crate::link::{Link, Toyo};
 use crate::position::{Coordinates, UNIT};
 use crate::prelude::*;
 use armctl_controller::toyo::table::Command as Word;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::gate::data_changed;
 use armctl_frame::store::{Store as _, Writable as _, describe_change};
 use armctl_frame::teach::TeachReport;

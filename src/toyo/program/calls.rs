@@ -1,10 +1,6 @@
 //! `toyo program calls`.
 
-use std::collections::BTreeSet;
-use std::path::PathBuf;
-
 use super::folder::{check_file, program_of, programs_in, read_program};
-use crate::link::Toyo;
 use crate::prelude::*;
 use armctl_controller::names::Names;
 use armctl_controller::references::Role;

@@ -1,12 +1,9 @@
 //! `toyo program check`.
 
-use std::path::{Path, PathBuf};
-
 use super::folder::{add_speeds, check_file, parameters_of, points_of, program_of, programs_in, read_program};
 use super::robot_data::{RobotData, Wanted, read_data};
 use super::text;
 use crate::files;
-use crate::link::Toyo;
 use crate::point::Points;
 use crate::prelude::*;
 use crate::sim::{self, Stop};
@@ -15,7 +12,6 @@ use armctl_controller::names::{Name, Names};
 use armctl_controller::references::Role;
 use armctl_controller::toyo::errors;
 use armctl_controller::toyo::program::{self, ControllerData, MAX_STEPS};
-use armctl_frame::names;
 use armctl_frame::programs::Program;
 use armctl_frame::programs::check::{CheckArguments, CheckContext, check, moved, unused_positions};
 use armctl_frame::programs::settings::{self, CheckSettings};

@@ -2,14 +2,8 @@
 
 use super::and_mode;
 use super::insert::moved_wrong;
-use super::steps;
-use crate::link::Link;
-use crate::link::Toyo;
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_controller::toyo::program::tags;
-use armctl_frame::confirmation::Confirmer;
-use armctl_frame::dry_run::unknown;
 
 /// Copy steps over other steps, within a task or to another task.
 #[derive(Debug, Args)]

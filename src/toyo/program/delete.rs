@@ -3,13 +3,7 @@
 use super::and_mode;
 use super::get::Step;
 use super::insert::moved_wrong;
-use super::steps;
-use crate::link::Link;
-use crate::link::Toyo;
 use crate::prelude::*;
-use crate::task_selection;
-use armctl_frame::confirmation::Confirmer;
-use armctl_frame::dry_run::unknown;
 
 /// Delete steps; later steps move up.
 #[derive(Debug, Args)]

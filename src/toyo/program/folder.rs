@@ -1,17 +1,11 @@
 //! Programs of a folder or of the controller, for commands that read whole programs.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-
 use super::get::Get;
 use crate::backup::Controller;
-use crate::link::Link;
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_controller::names::Names;
 use armctl_controller::references::ProgrammedSpeed;
 use armctl_controller::toyo::program::{self, Checked, ControllerData, NOT_IN_MANUAL, Rows, Style};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::programs::source::{FolderFilter, ProgramFile, ProgramSet, read_folder};
 use armctl_frame::programs::{Line, Program};
 

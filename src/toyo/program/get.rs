@@ -1,21 +1,14 @@
 //! `toyo program get`.
 
-use std::path::PathBuf;
-
 use super::source_texts::Source;
-use super::steps;
 use crate::item_reads::Answers;
-use crate::link::{Link, Toyo, misuse};
+use crate::link::misuse;
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_controller::toyo::program::{self, Rows, Style, Unread, listing_named, not_read};
 use armctl_controller::toyo::table::Op;
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::items::{ItemOutcome, verdict};
 use armctl_frame::local_names::Target;
-use armctl_frame::names;
-use armctl_frame::output::csv::RowsOf;
 use armctl_frame::output::escape;
 use armctl_frame::robot::file::FileItem;
 use armctl_frame::robot::item::Plain;

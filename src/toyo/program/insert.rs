@@ -2,18 +2,10 @@
 
 use super::and_mode;
 use super::get::Step;
-use super::steps;
-use crate::complete;
 use crate::eeprom::{Cells, STORED_VALUE};
-use crate::link::Link;
-use crate::link::Toyo;
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_controller::names::Names;
 use armctl_controller::toyo::program::{Part, check_named};
-use armctl_frame::confirmation::Confirmer;
-use armctl_frame::dry_run::unknown;
-use armctl_frame::names;
 
 /// Insert a step. The number of each later step increases by one.
 #[derive(Debug, Args)]

@@ -1,12 +1,7 @@
 //! `toyo program list`.
 
-use super::steps;
-use crate::link::Link;
-use crate::link::Toyo;
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_controller::toyo::program::{tags, used};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::items::{ItemError, verdict};
 
 /// List the tasks, with the number of steps of each task.

@@ -1,14 +1,11 @@
 //! `toyo program show --path`: the motion of a program, as the offline simulator runs it.
 
-use std::collections::{BTreeMap, HashSet};
-use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::collections::HashSet;
 
 use super::folder::{check_file, parameters_of, points_of, program_of, programs_in};
 use super::robot_data::{RobotData, Wanted, read_data};
 use super::show::Show;
 use crate::files;
-use crate::link::Toyo;
 use crate::prelude::*;
 use armctl_controller::findings::Finding;
 use armctl_controller::names::Names;
@@ -64,6 +61,7 @@ impl Command for ProgramPath {
     type Family = Toyo;
     type Report = PathReport;
     const ID: &'static str = "toyo.program.path";
+    const USES_FILES: bool = true;
 
     fn risk(&self) -> Risk {
         if self.takes_robot() && self.task().is_some() { Risk::Write } else { Risk::Read }
@@ -71,10 +69,6 @@ impl Command for ProgramPath {
 
     fn takes_robot(&self) -> bool {
         self.options.from().is_none() && (self.show.program.is_none() || self.task().is_some())
-    }
-
-    fn uses_files(&self) -> bool {
-        true
     }
 
     fn run_alone(&self) -> Result<PathReport, Failure> {
@@ -198,7 +192,7 @@ fn motion(source: &Source) -> Result<Motion, Failure> {
                 text: step.text(),
                 reason: "the program of another task".to_owned(),
             });
-            *record = super::steps::nop();
+            *record = steps::nop();
         }
     }
     // Where a motion with PASS ends depends on its start. The start of the first motion is not known.

@@ -1,26 +1,17 @@
 //! `toyo program put`.
 
-use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
 
 use super::and_mode;
 use super::check::Labelled;
-use super::steps;
 use super::text;
 use crate::eeprom::{Cells, STORED_VALUE};
-use crate::link::Link;
-use crate::link::Toyo;
+use crate::files;
 use crate::prelude::*;
-use crate::{files, task_selection};
 use armctl_controller::names::Names;
 use armctl_controller::toyo::program::{self, MAX_STEPS, Part, Program, check_named};
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::confirmation::Confirmer;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::interrupt::interruptible;
-use armctl_frame::names;
-use armctl_frame::output::csv::RowsOf;
 use armctl_frame::robot::file::{FILES, FileItem};
 use armctl_frame::robot::item::Plain;
 

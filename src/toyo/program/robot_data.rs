@@ -1,15 +1,10 @@
 //! Points, groups and tables that programs use, of a backup or of the controller, as commands that write them.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
-
 use crate::eeprom_tables::{EepromRow as _, is_zero, texts};
 use crate::item_reads::read_each;
-use crate::link::{Link, wrong};
 use crate::point::{Points, table};
 use crate::prelude::*;
 use crate::sim::{in_file, parameter_writes};
-use crate::task_selection;
 use armctl_controller::names::Kind;
 use armctl_controller::toyo::names;
 use armctl_controller::toyo::program::{Program, uses};

@@ -1,22 +1,13 @@
 //! `toyo program search`.
 
-use std::path::PathBuf;
-
 use super::folder::{check_file, program_of, programs_in, read_program};
-use super::steps;
-use crate::link::Link;
-use crate::link::Toyo;
 use crate::prelude::*;
 use crate::refusal;
-use crate::task_selection;
 use crate::wait::status_page;
 use armctl_client::toyo::Refusal;
 use armctl_controller::names::{Kind as NameKind, NameMatch, Names};
 use armctl_controller::toyo::program::{ControllerData, MAX_STEPS, name_of};
 use armctl_controller::toyo::table::Op;
-use armctl_frame::dry_run::unknown;
-use armctl_frame::names;
-use armctl_frame::output::csv::RowsOf;
 use armctl_frame::programs::Program;
 use armctl_frame::programs::search::{Matches, SearchArguments};
 use armctl_frame::programs::source::ProgramSet;

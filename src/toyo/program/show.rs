@@ -1,13 +1,8 @@
 //! `toyo program show`.
 
-use std::path::PathBuf;
-
-use super::steps;
-use crate::link::Toyo;
 use crate::prelude::*;
 use crate::refusal;
 use armctl_client::toyo::Refusal;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::program::Program;
 
 /// Show the current step of the program of the current task.

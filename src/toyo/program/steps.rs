@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use crate::eeprom::Cell;
 use crate::item_reads::{Answers, read_until};
-use crate::link::{Link, Refusal, misuse};
+use crate::link::{Refusal, misuse};
 use crate::prelude::*;
 use armctl_controller::toyo::request::Answer;
 use armctl_controller::toyo::status::RunMode;

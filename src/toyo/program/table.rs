@@ -1,12 +1,9 @@
 //! The steps of a task as a table, for restores.
 
-use super::steps;
 use crate::eeprom::Cells;
 use crate::field_values::NOT_IN_MANUAL;
 use crate::item_reads::read_each;
-use crate::link::{Link, Toyo};
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_controller::toyo::table::Op;
 use armctl_frame::robot::item::Plain;
 use armctl_frame::store::Row;

@@ -5,7 +5,6 @@ use crate::prelude::*;
 use armctl_controller::names::Name;
 use armctl_controller::toyo::program::{Checked, Finding, Program, Severity};
 use armctl_frame::settings::inventory;
-use armctl_frame::settings::target::Family;
 
 /// Parses a name with its address on a command line, for example `pick=PT1`.
 pub fn name(text: &str) -> Result<Name, String> {
@@ -39,7 +38,6 @@ fn in_a_line(name: &str, finding: &Finding) -> String {
 mod tests {
     use super::*;
     use armctl_controller::toyo::program::{MAX_STEPS, check};
-    use armctl_frame::failure::Kind;
 
     fn screen() -> Screen {
         Screen::new(armctl_frame::output::Format::Json, armctl_frame::output::ColorChoice::Never, true, 0)

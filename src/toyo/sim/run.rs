@@ -1,8 +1,5 @@
 //! `toyo sim run`.
 
-use std::path::{Path, PathBuf};
-use std::time::Duration;
-
 use super::trace::{End, Recorder, Source, Stop, Trace};
 use crate::eeprom_tables::EepromRow;
 use crate::field_values::Changes;
@@ -15,7 +12,6 @@ use armctl_controller::names::{Name, Names};
 use armctl_controller::toyo::program::{MAX_STEPS, Program, check_named};
 use armctl_controller::toyo::simulator::{Simulator, Start, What};
 use armctl_frame::OfflineCommand;
-use armctl_frame::settings::duration;
 use armctl_frame::store::rows_of_file;
 
 /// Run a program in the simulator in virtual time, and print steps, outputs and positions.

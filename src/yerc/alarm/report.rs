@@ -1,11 +1,10 @@
 //! Alarm reports and their display.
 
 use crate::link::Link;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::yerc::payload;
 use armctl_frame::robot::alarm::{Alarm, AlarmEntry, AlarmState, ExtraColumns, Kind};
 use armctl_frame::settings::alarms::Origin;
-use armctl_frame::settings::target::Family;
 
 /// Whether the report contains the sub-code texts of the controller.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -3,8 +3,6 @@
 use super::manifest::Controller;
 use super::name::{self, ReportedName, type_word};
 use super::transfer::{self, Download};
-use crate::link::Link;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::text::hex;
 use armctl_controller::yerc::files;

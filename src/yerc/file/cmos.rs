@@ -5,20 +5,13 @@
 //! request is sent once more. If it has data, this is already the file. The request is never repeated automatically,
 //! because that could create a second backup.
 
-use std::path::PathBuf;
-use std::time::Duration;
-
 use super::transfer;
-use crate::link::Link;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::yerc::files;
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::local_names::{Target, folder_of, make_folder, private_folder};
 use armctl_frame::output::progress::Progress;
 use armctl_frame::robot::file::{FileItem, Files, State};
-use armctl_frame::settings::duration;
 
 /// Creates and downloads the batch backup.
 #[derive(Debug, Args)]

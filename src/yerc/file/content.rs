@@ -3,13 +3,9 @@
 
 use std::fs::File;
 use std::io::{ErrorKind, Read as _, Seek as _};
-use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
-
-use armctl_files as files;
+use crate::prelude::basics::*;
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::failure::Failure;
 
 /// Size of a piece. It contains a few blocks.
 const READ_SIZE: usize = 1 << 13;

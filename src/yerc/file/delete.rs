@@ -3,8 +3,6 @@
 use super::existence::{Existence, Lists};
 use super::name::{self, ReportedName};
 use super::transfer;
-use crate::complete;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_frame::robot::file::{FileItem, Files};
 

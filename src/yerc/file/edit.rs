@@ -4,13 +4,10 @@ use super::content::{Content, JobRules};
 use super::name::{self, ReportedName};
 use super::transfer;
 use super::upload::{Delivery, UploadOptions, upload};
-use crate::complete;
-use crate::link::{Link, Yerc};
 use crate::prelude::*;
 use armctl_controller::yerc::query::{Query as _, ReadJob, ReadStatus};
 use armctl_frame::backup::job_date::align_files;
 use armctl_frame::backup::text_diff::{self, Change as LineChange, DiffLine, Hunk, MAX_TEXT, TextDifference};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::editor_session::EditedText;
 use armctl_frame::local_names::local_name;
 

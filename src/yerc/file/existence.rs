@@ -2,7 +2,6 @@
 //! files that will be overwritten or deleted.
 
 use super::transfer;
-use crate::link::Link;
 use crate::prelude::*;
 use armctl_controller::yerc::files;
 use armctl_frame::backup::continues_after;

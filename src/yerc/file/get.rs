@@ -1,15 +1,9 @@
 //! `yerc file get` (FS and DX 3.4.3).
 
-use std::path::{Path, PathBuf};
-
 use super::name;
 use super::pattern::{self, FilePattern, is_pattern};
 use super::transfer::{self, Download};
-use crate::complete;
-use crate::link::Link;
-use crate::link::Yerc;
 use crate::prelude::*;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::local_names::{LocalNames, Target, make_folder, private_folder};
 use armctl_frame::output::escape;
 use armctl_frame::robot::file::{FileItem, Files};

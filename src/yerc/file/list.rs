@@ -2,7 +2,6 @@
 
 use super::name::{ReportedName, TypeArg, name_of_type, type_word};
 use super::transfer;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::yerc::files;
 use armctl_frame::backup;

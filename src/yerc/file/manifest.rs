@@ -3,13 +3,11 @@
 use serde::Deserialize;
 
 use super::name::exact;
-use crate::link::Link;
 use crate::prelude::*;
 use armctl_controller::text::unhex;
 use armctl_controller::yerc::query::{ReadSystemInfo, SystemPart};
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::manifest::{About, Entry};
-use armctl_frame::settings::target::Family;
 
 /// Manifest of a backup.
 pub type Manifest = manifest::Manifest<Controller>;

@@ -1,7 +1,5 @@
 //! Names and types of files in arguments and in reports.
 
-use clap::ValueEnum;
-
 use crate::prelude::*;
 use armctl_controller::text::unhex;
 use armctl_frame::robot::file::FileItem;

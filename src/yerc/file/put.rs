@@ -1,12 +1,9 @@
 //! `yerc file put` (FS and DX 3.4.2).
 
-use std::path::{Path, PathBuf};
-
 use super::content::{Content, JobRules};
 use super::existence::{Existence, Lists};
 use super::name::{self, ReportedName};
 use super::upload::{self, Delivery, UploadOptions, upload};
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_frame::local_names::controller_name;
 use armctl_frame::robot::file::{FileItem, Files};

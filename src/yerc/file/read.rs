@@ -2,7 +2,6 @@
 
 use super::existence::{Existence, Lists};
 use super::transfer;
-use crate::link::Link;
 use crate::prelude::*;
 use armctl_frame::backup::continues_after;
 

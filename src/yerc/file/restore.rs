@@ -1,22 +1,15 @@
 //! `yerc restore`: uploads the files of a backup.
 
-use std::path::PathBuf;
-
-use serde_json::Value;
-
 use super::content::Content;
 use super::existence::{Existence, Lists};
 use super::manifest::{Manifest, controller_file};
 use super::name::ReportedName;
 use super::transfer;
 use super::upload::{self, Delivery, UploadOptions, upload};
-use crate::link::Link;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::manifest::Entry;
 use armctl_frame::backup::{NOT_CHOSEN, Only, RestoreReport, RestoreSelection, would_leave, would_write};
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::local_names::private_folder;
 use armctl_frame::robot::file::{FileItem, State};
 

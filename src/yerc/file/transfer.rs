@@ -1,15 +1,12 @@
 //! File and list transfers over the link. Each way in which a transfer can end has its own message.
 
-use std::time::Duration;
-
 use super::compare::Comparer;
 use super::content::Content;
 use crate::failure::refusal_failure;
-use crate::link::{Link, Refusal};
+use crate::link::Refusal;
 use crate::prelude::*;
 use armctl_controller::yerc::files;
 use armctl_controller::yerc::files::split_list;
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{DownloadEnd, UploadEnd};
 use armctl_controller::yerc::table::service;
 use armctl_controller::yerc::wire::Status;

@@ -1,7 +1,5 @@
 //! Start state of a simulator from a backup.
 
-use std::path::Path;
-
 use super::manifest::Manifest;
 use crate::prelude::*;
 use armctl_controller::text::unhex;

@@ -2,16 +2,13 @@
 //! there is always at least one copy of the job.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
 use super::compare::{Comparer, Comparison};
 use super::content::Content;
 use super::existence::{Existence, Lists};
 use super::transfer::{self, Download};
-use crate::link::Link;
 use crate::prelude::*;
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::local_names::{Target, folder_of, local_name};
 
 /// A file to upload.

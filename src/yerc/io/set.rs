@@ -1,21 +1,13 @@
 //! `yerc io set`.
 
-use std::collections::BTreeMap;
 use std::str::FromStr;
 
 use super::super::batch_split::{BatchSplit, read_in_batches};
-use super::super::control_commands::usage;
 use super::{group_item, item, signal};
-use crate::complete;
-use crate::item_requests::read_failure;
-use crate::link::Link;
-use crate::link::Yerc;
 use crate::prelude::*;
-use armctl_controller::user_input;
 use armctl_controller::yerc::query::Query as _;
 use armctl_controller::yerc::signal::Signal;
 use armctl_controller::yerc::variables::{WriteIoStep, parse_numbers, plan_io_reads, plan_io_writes};
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoItem, IoValue, WrittenSignal, WrittenSignals};
 use armctl_frame::robot::item::Plain;
 use armctl_frame::settings_report::{IF_DIFFERENT, OLD_VALUE};

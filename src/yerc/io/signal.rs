@@ -1,13 +1,10 @@
 //! Signal and group arguments.
 
-use super::super::control_commands::usage;
 use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_controller::user_input;
 use armctl_controller::yerc::signal::{Signal, SignalError, io_class};
 use armctl_controller::yerc::table::{Row, Span};
 use armctl_controller::yerc::variables::{IoStep, plan_io_reads};
-use armctl_frame::names;
 
 /// Placeholder for a name that is not resolved yet: a signal that exists on every model.
 const ANY: &str = "10010";

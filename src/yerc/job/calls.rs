@@ -1,8 +1,6 @@
 //! `yerc job calls`.
 
 use super::programs::{JobSource, jobs_of, parse};
-use crate::complete;
-use crate::link::Yerc;
 use crate::prelude::*;
 use crate::selected_job::SelectedJob;
 use armctl_frame::programs::calls::CallReport;

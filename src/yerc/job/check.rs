@@ -1,8 +1,6 @@
 //! `yerc job check`.
 
 use super::programs::{JobSource, jobs_in, jobs_of, parse};
-use crate::complete;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_frame::programs::check::{CheckArguments, CheckContext, check};
 use armctl_frame::programs::settings;

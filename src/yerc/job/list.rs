@@ -1,7 +1,6 @@
 //! `yerc job list`.
 
 use crate::file::{LISTS, ReportedName, list, plan_all};
-use crate::link::Yerc;
 use crate::prelude::*;
 use crate::selected_job::SelectedJob;
 use armctl_controller::yerc::files;

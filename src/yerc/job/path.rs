@@ -1,20 +1,15 @@
 //! `yerc job show --path`: the motion of a job.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
-
 use super::order::{Executed, RunOrder};
 use super::programs::jobs_in;
 use super::{Show, without_suffix};
 use crate::file::{exact, fetch, plan_all};
 use crate::item_requests::ReadError;
-use crate::link::{Link, Yerc};
 use crate::prelude::*;
 use armctl_controller::references::{ProgrammedSpeed, Reference, Role};
 use armctl_controller::yerc::job::{JobText, scan};
 use armctl_controller::yerc::query::{ReadJob, ReadVariable};
 use armctl_controller::yerc::variables::{Value, VariableKind};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::local_names::folder_of;
 use armctl_frame::path::{
     Drawing, Interpolation, Motion, NotDrawn, PathOptions, PathReport, Recorder, Step, arc, length,
@@ -63,13 +58,10 @@ impl Command for JobPath {
     type Family = Yerc;
     type Report = PathReport;
     const ID: &'static str = "yerc.job.path";
+    const USES_FILES: bool = true;
 
     fn takes_robot(&self) -> bool {
         self.options.from().is_none() && self.file().is_none()
-    }
-
-    fn uses_files(&self) -> bool {
-        true
     }
 
     fn run_alone(&self) -> Result<PathReport, Failure> {

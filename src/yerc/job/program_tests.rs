@@ -1,7 +1,3 @@
-use std::path::Path;
-
-use serde_json::Value;
-
 use crate::prelude::*;
 use crate::testing::{DX200, quiet, resolve_robot};
 

@@ -1,16 +1,12 @@
 //! Jobs of a controller or of a folder, for commands that read all jobs.
 
-use std::path::{Path, PathBuf};
-
 use super::without_suffix;
 use crate::file::{Manifest, exact, fetch_listed, job_form, list, plan_all};
-use crate::link::Link;
 use crate::prelude::*;
 use armctl_controller::findings::{Finding, Rule, Severity};
 use armctl_controller::yerc::files;
 use armctl_controller::yerc::job::{JobText, position, scan};
 use armctl_frame::backup::continues_after;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::items::{ItemError, describe_request};
 use armctl_frame::programs::source::{FolderFilter, ProgramFile, ProgramSet, read_folder};
 use armctl_frame::programs::{Line, Position, Program};

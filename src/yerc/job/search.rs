@@ -1,15 +1,10 @@
 //! `yerc job search`.
 
-use std::path::Path;
-
 use super::programs::{JobSource, jobs_of, parse};
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::names::{Kind as NameKind, Name, NameMatch, Names};
-use armctl_controller::similar_word::nearest;
 use armctl_controller::yerc::job::names_of;
 use armctl_controller::yerc::names::{FILES, read};
-use armctl_frame::names;
 use armctl_frame::programs::search::{Matches, SearchArguments};
 use armctl_frame::programs::source::ProgramSet;
 use armctl_frame::text_files;

@@ -4,7 +4,6 @@
 //! downloaded each time. Its hash identifies the version.
 
 use crate::file::{exact, fetch};
-use crate::link::Link;
 use crate::prelude::*;
 use armctl_controller::yerc::payload::JobInfo;
 use armctl_frame::backup::manifest::Hash;

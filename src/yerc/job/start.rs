@@ -1,23 +1,17 @@
 //! `yerc job start`: starts the selected job, or a job by name, once or several times, and can wait for its end.
 
-use std::time::Duration;
-
 use tokio::time::Instant;
 
 use super::{Select, about, without_suffix};
-use crate::complete;
-use crate::link::{Link, Yerc};
 use crate::motion::{POLL_INTERVAL, START_TIMEOUT, StandstillCause, lost_contact, plan_alarm};
 use crate::number_arguments::parse_in_range;
 use crate::prelude::*;
 use crate::selected_job::SelectedJob;
 use armctl_controller::yerc::payload::{ControllerStatus, StatusBit};
 use armctl_controller::yerc::query::{Query as _, ReadJob, ReadStatus, SelectJob, StartJob};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::gate::data_changed;
 use armctl_frame::repeated_runs::{Repeat, Runs};
 use armctl_frame::robot::program::{Program, ProgramState};
-use armctl_frame::settings::duration;
 use armctl_frame::wait_arguments::ProgramEnd;
 
 /// Starts the selected job, or selects a job and starts it (FS and DX 3.3.23, 3.3.24).

@@ -1,12 +1,10 @@
 //! A motion from the confirmation to its end: reads before the start, and supervision after the start.
 
-use std::time::Duration;
-
 use tokio::time::Instant;
 
 use super::question::{Question, moved_during_question};
 use crate::failure::refusal_failure;
-use crate::link::{Link, Refusal, Yerc};
+use crate::link::Refusal;
 use crate::motion::{POLL_INTERVAL, START_TIMEOUT, StandstillCause, lost_contact, plan_alarm};
 use crate::position::{self, as_reported, in_a_line};
 use crate::prelude::*;
@@ -17,7 +15,6 @@ use armctl_controller::yerc::query::{Coordinates, Query, ReadPosition, ReadStatu
 use armctl_controller::yerc::status::is_absent;
 use armctl_frame::robot::motion::Motion;
 use armctl_frame::robot::position as robot;
-use armctl_frame::settings::duration;
 
 /// A motion whose arguments have been checked.
 #[derive(Debug)]

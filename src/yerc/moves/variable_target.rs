@@ -4,10 +4,8 @@ use super::arguments::{Destination, Speed, Values};
 use super::execution::{Execution, Goal, MotionReport, plan_looks};
 use super::question::Question;
 use super::{Target, cartesian_move, describe_path, unnamed_base_axes};
-use crate::control_commands::usage;
 use crate::failure::refusal_failure;
 use crate::item_requests::ReadError;
-use crate::link::{Link, Yerc};
 use crate::position;
 use crate::prelude::*;
 use crate::var::{different_words, is_undefined, variable_name};
@@ -17,8 +15,6 @@ use armctl_controller::yerc::query::{
     Coordinates, MoveCartesian, MoveKind, MovePulse, Query, ReadPosition, ReadVariable,
 };
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
-use armctl_frame::dry_run::unknown;
-use armctl_frame::names;
 
 /// A move to a position in a variable or to axis angles.
 pub(super) struct Motion<'a> {

@@ -5,13 +5,10 @@ use std::collections::HashMap;
 use super::position_word::with_field;
 use super::table::{Variables, is_undefined};
 use crate::item_requests::ReadError;
-use crate::link::Link;
 use crate::prelude::*;
 use armctl_controller::yerc::query::ReadVariable;
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::table::service;
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
 use armctl_frame::store::describe_change;
 

@@ -1,18 +1,14 @@
 //! `yerc var set`.
 
-use std::path::PathBuf;
 use std::str::FromStr;
 
 use super::cells::LAST_TOOL;
 use super::position_word::Word;
 use super::table::{Draft, StringForm, Variables};
-use crate::complete;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::names::Kind;
 use armctl_controller::user_input::{self, integer};
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
-use armctl_frame::names;
 use armctl_frame::store::{Row, TableWrite, WrittenOf, write};
 use armctl_frame::teach::parse_printed_position;
 

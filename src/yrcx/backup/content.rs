@@ -1,28 +1,22 @@
 //! The parts of a controller as the text files of a backup.
 
-use std::collections::BTreeSet;
-use std::path::Path;
-
 use serde::Deserialize;
 
 use super::parts::Part;
 use super::save::{MAX_UNDEFINED_RUN, gap_after};
 use crate::confirmed_write::read_current;
 use crate::data::{Hands, Pallets, PointSheet, Points, Shifts};
-use crate::link::{Link, Yrcx};
 use crate::number_arguments::runs;
 use crate::numbered_tables::Numbered;
 use crate::param::{Parameters, Setting};
 use crate::prelude::*;
 use crate::read_requests::{ask_each, is_undefined};
-use crate::refusal::BuildOrder as _;
 use crate::robot_settings::Settings;
 use crate::single_command::format_field;
 use crate::var::Variables;
 use armctl_controller::yrcx::table::Command;
 use armctl_frame::backup::manifest::{About, Entry};
 use armctl_frame::backup::parts::Table;
-use armctl_frame::settings::target::Family;
 use armctl_frame::store::{self, part_text};
 use armctl_frame::text_files;
 

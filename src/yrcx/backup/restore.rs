@@ -2,12 +2,10 @@
 
 use super::content::{self, Controller};
 use super::parts::Part;
-use crate::link::{Link, Yrcx};
 use crate::prelude::*;
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::parts::{ReplacedValues, Table, compare_all, overwriting, write_all};
 use armctl_frame::backup::{NOT_CHOSEN, NOT_MACHINE, RestoreReport, RestoreSelection, would_leave, would_write};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::file::FileItem;
 
 /// A part with the rows to be written.

@@ -1,19 +1,15 @@
 //! `yrcx backup`.
 
-use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::content::{self, Controller, Text};
 use super::parts::{Part, THOUSAND};
 use crate::data::PointSheet;
-use crate::link::Link;
-use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_frame::backup::arguments::BackupOptions;
 use armctl_frame::backup::manifest::{Entry, LeftOut};
 use armctl_frame::backup::save::{self, BackupWriter, Task, interrupted_failure};
 use armctl_frame::backup::{BackupReport, Only, SaveOptions};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::file::{FileItem, State};
 use armctl_frame::store::{self, Store as _};
 

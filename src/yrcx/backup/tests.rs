@@ -1,12 +1,5 @@
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use std::time::Duration;
-
-use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::link::Link;
-use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::testing::{frames, quiet, resolved, risk, words};
 use armctl_frame::Family as _;

@@ -1,11 +1,9 @@
 //! Start state of a simulator from a backup.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use super::content::{Controller, load};
 use super::parts::Part;
-use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Words};
 use armctl_controller::yrcx::simulator::Start;
@@ -46,7 +44,7 @@ pub fn start(folder: &Path) -> Result<Start, Failure> {
 }
 
 /// Command words of a planned frame.
-fn words(frame: &serde_json::Value) -> Option<Words> {
+fn words(frame: &Value) -> Option<Words> {
     let mut words = [0; COMMAND_WORDS];
     let texts = frame.as_array().filter(|texts| texts.len() == COMMAND_WORDS)?;
     for (word, text) in words.iter_mut().zip(texts) {

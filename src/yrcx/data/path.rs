@@ -1,11 +1,7 @@
 //! `yrcx point list --path`: points as a picture.
 
-use std::collections::BTreeMap;
-use std::path::Path;
-
 use super::{PointSheet, Points};
 use crate::backup::Controller;
-use crate::link::Yrcx;
 use crate::numbered_tables::{Kind as _, Numbered};
 use crate::prelude::*;
 use armctl_frame::backup::manifest::open_existing;
@@ -30,13 +26,10 @@ impl Command for PointPath {
     type Family = Yrcx;
     type Report = PathReport;
     const ID: &'static str = "yrcx.point.path";
+    const USES_FILES: bool = true;
 
     fn takes_robot(&self) -> bool {
         self.options.from().is_none()
-    }
-
-    fn uses_files(&self) -> bool {
-        true
     }
 
     fn run_alone(&self) -> Result<PathReport, Failure> {

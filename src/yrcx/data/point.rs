@@ -1,12 +1,9 @@
 //! `yrcx point` (4.3.1).
 
-use std::path::{Path, PathBuf};
-
 use clap::ArgGroup;
 
 use super::path::PointPath;
 use super::sheet::PointSheet;
-use crate::link::Yrcx;
 use crate::number_arguments::single;
 use crate::numbered_tables::{Kind, Numbered};
 use crate::position::{Unit, mm, position, unit_of};

@@ -1,10 +1,8 @@
 //! Points with their comments, as a spreadsheet has them: `yrcx point dump` and `restore`.
 
 use std::collections::{HashMap, HashSet};
-use std::path::Path;
 
 use super::{Comments, Points};
-use crate::link::{Link, Yrcx};
 use crate::numbered_tables::{Draft as Texts, Kind as _, Numbered, Row};
 use crate::prelude::*;
 use crate::read_requests::plan_each;
@@ -247,7 +245,6 @@ impl Writable for PointSheet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_controller::yrcx::value::Values;
 
     /// Returns point 7 as it is stored: in mm and left-handed, or in pulses.
     fn stored_point(texts: [&str; 6]) -> Content {

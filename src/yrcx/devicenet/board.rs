@@ -1,13 +1,9 @@
 //! Explicit messages to the DeviceNet node of a controller. They start no polling of the node.
 
-use std::time::Duration;
-
 use super::check;
 use super::connect::{adapter, request_timeout};
 use crate::fieldbus::{BusBoard, Checked, ConnectionParameters};
-use crate::link_error::not_open;
-use crate::prelude::*;
-use armctl_frame::face::layers::Layers;
+use crate::prelude::basics::*;
 use armctl_frame::settings::target::bus::Scheme;
 use armctl_frame::settings::target::devicenet::{BUS, DeviceNet};
 use armctl_transport::devicenet::error::Error;

@@ -2,8 +2,7 @@
 
 use super::board::Board;
 use crate::fieldbus::{Checked, InLayer as _, VENDOR_ID};
-use crate::prelude::*;
-use armctl_frame::face::layers::Layers;
+use crate::prelude::basics::*;
 use armctl_transport::devicenet::can::BusState;
 
 /// Layers in the order of the check.

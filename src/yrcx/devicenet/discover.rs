@@ -1,15 +1,9 @@
 //! Discovery of DeviceNet nodes on an adapter.
 
-use std::time::Duration;
-
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-
 use super::board::Node;
 use super::connect::adapter;
 use crate::fieldbus::{self, Device, Scope, VENDOR_ID, bus_of, fields};
-use crate::link_error::not_open;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::settings::target::Bus;
 use armctl_frame::settings::target::devicenet::DeviceNet;
 use armctl_transport::devicenet::network::Network;

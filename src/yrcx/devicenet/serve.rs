@@ -2,12 +2,11 @@
 
 use std::iter;
 use std::net::SocketAddr;
-use std::path::Path;
 
 use super::simulated;
 use super::simulated::{Controller, FAULTS, size};
 use crate::fieldbus::{Operator, RunningSimulation, Serve, ServeOptions};
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use crate::simulated::{faults, faults_of_option};
 use armctl_frame::serve::{address, bind_failure};
 use armctl_frame::settings::target::devicenet::SLCAN;

@@ -2,14 +2,11 @@
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
-use std::time::Duration;
-
-use anyhow::Context as _;
 
 use super::bus::BUS;
+use crate::prelude::basics::*;
 use crate::simulated::{Simulated, faults_of_url, start};
 use armctl_controller::yrcx::simulator::{Simulator, Start};
-use armctl_frame::failure::Failure;
 use armctl_frame::settings::target::Sim;
 use armctl_frame::settings::target::devicenet::SLCAN;
 use armctl_transport::devicenet::can::Bitrate;

@@ -4,10 +4,8 @@ use std::net::SocketAddrV4;
 
 use super::{check, connect};
 use crate::fieldbus::{BusBoard, Checked, ConnectionParameters};
-use crate::link_error::not_open;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::text;
-use armctl_frame::face::layers::Layers;
 use armctl_frame::settings::target::eip::{self, EipRole, SCHEME};
 use armctl_transport::eip::ASSEMBLY;
 use armctl_transport::eip::client::Client;
@@ -225,9 +223,9 @@ impl Object {
     }
 }
 
-impl std::fmt::Display for Object {
+impl fmt::Display for Object {
     /// Formats the object, for example "class 0x04 (assembly), instance 100, attribute 3".
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "class {:#04x}", self.class)?;
         if let Some((_, name)) = CLASSES.iter().find(|(class, _)| *class == self.class) {
             write!(f, " ({name})")?;

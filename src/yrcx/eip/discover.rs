@@ -2,14 +2,10 @@
 
 use std::io::ErrorKind;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
-use std::time::Duration;
-
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 
 use super::board::Identity;
 use crate::fieldbus::{self, Device, Scope, VENDOR_ID, fields};
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::failure::plain;
 use armctl_frame::settings::target::eip::SCHEME;
 use armctl_transport::eip::PORT;

@@ -1,12 +1,8 @@
 //! `yrcx eip get` and `yrcx eip set`: raw explicit messages.
 
-use serde_json::json;
-
 use super::board::{Board, Object, hex_pairs};
-use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_controller::text;
-use armctl_controller::user_input;
 use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
 
 /// Reads an attribute of an object, or all its attributes (Get_Attribute_Single, Get_Attributes_All).

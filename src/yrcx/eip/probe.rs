@@ -1,9 +1,7 @@
 //! `yrcx eip probe`.
 
 use super::board::{Board, Identity, ProbeResult, warning_cell};
-use crate::link::Yrcx;
 use crate::prelude::*;
-use armctl_frame::output::csv::RowsOf;
 
 /// Finds the assemblies of the board: armctl reads every assembly from 1 to 255. It requests no connection.
 #[derive(Debug, Args)]

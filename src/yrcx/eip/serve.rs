@@ -4,7 +4,7 @@ use std::net::SocketAddrV4;
 
 use super::simulated::{self, Controller, FAULTS};
 use crate::fieldbus::{Operator, RunningSimulation, Serve, ServeOptions};
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use crate::simulated::{faults, faults_of_option};
 use armctl_frame::serve::{address, bind_failure};
 use armctl_frame::settings::target::eip::SCHEME;

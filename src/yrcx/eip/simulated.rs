@@ -2,12 +2,9 @@
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddrV4};
-use std::time::Duration;
-
-use anyhow::Context as _;
 
 use super::bus::BUS;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use crate::simulated::{Simulated, faults_of_url, start};
 use armctl_controller::yrcx::simulator::{Simulator, Start};
 use armctl_frame::settings::target::Sim;

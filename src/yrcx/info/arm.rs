@@ -1,9 +1,7 @@
 //! `yrcx info arm` (4.7.9, 4.7.10).
 
-use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::read_requests::ask_each;
-use crate::refusal::BuildOrder as _;
 use crate::single_command::format_field;
 use armctl_frame::items;
 use armctl_frame::items::ItemError;

@@ -1,6 +1,5 @@
 //! `yrcx info origin` (4.7.11).
 
-use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::refusal::invalid_words;
 use crate::single_command::format_field;

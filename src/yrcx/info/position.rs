@@ -1,15 +1,10 @@
 //! `yrcx position` (4.7.4).
 
-use std::time::Duration;
-
-use crate::link::Yrcx;
 use crate::position::{Unit, group, position};
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_frame::face::shared_commands::CommonReport;
 use armctl_frame::plot::SeriesHistory;
 use armctl_frame::robot::position::{AllPositions, Joint, Positions};
-use armctl_frame::settings::duration;
 
 /// Reads the position, once or continuously.
 #[derive(Debug, Args)]

@@ -1,13 +1,9 @@
 //! Commands `yrcx info tasks` (4.7.5) and `yrcx info line` (4.7.6). One remote command reads eight tasks.
 
-use crate::complete;
-use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::program;
 use crate::read_requests::ask_each;
-use crate::refusal::BuildOrder as _;
 use crate::single_command::format_field;
-use armctl_controller::user_input;
 use armctl_frame::robot::item::{Columns, Item, Items};
 
 /// Tasks in the answer of one remote command: half of the 16 tasks.

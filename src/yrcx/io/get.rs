@@ -1,11 +1,8 @@
 //! `yrcx io get`.
 
 use super::{SignalOrWord, readables, row, word_item};
-use crate::complete;
-use crate::link::Yrcx;
 use crate::number_arguments::Series;
 use crate::prelude::*;
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoRow, IoValue, Signals};
 
 /// Reads signals and general-purpose words.

@@ -1,9 +1,7 @@
 //! `yrcx io list`.
 
 use super::row;
-use crate::link::Yrcx;
 use crate::prelude::*;
-use armctl_frame::names;
 use armctl_frame::robot::io::{Filter, Signals};
 
 /// Reads all signals. Inputs are listed only in a session, because only the client that sets the inputs can read them.

@@ -1,15 +1,10 @@
 //! `yrcx io set` and `yrcx io pulse`.
 
 use super::{ANY_INPUT, called, input, item, named_input, word_item};
-use crate::complete;
-use crate::link::Link;
-use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
-use armctl_controller::user_input;
 use armctl_controller::yrcx::procedure::Procedure;
 use armctl_controller::yrcx::register::Register;
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, WrittenSignal, WrittenSignals};
 
 /// Switches inputs of the controller one after the other, and sets general-purpose words.

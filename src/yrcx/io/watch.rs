@@ -1,11 +1,8 @@
 //! `yrcx io watch`: signal changes as they occur.
 
 use super::row;
-use crate::complete;
-use crate::link::{Link, Yrcx};
 use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, Signals, WATCHED};
 
 /// Arguments: the outputs of the controller to watch.

@@ -3,9 +3,7 @@
 use super::{MotionReport, execute_motion};
 use crate::arguments::{Direction, UnitArgument};
 use crate::confirmed_write::confirmation;
-use crate::link::Yrcx;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_frame::wait_arguments::MotionEnd;
 
 /// Resets the absolute position of an axis of the mark type.

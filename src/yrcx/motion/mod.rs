@@ -16,12 +16,9 @@ use std::sync::mpsc::{self, Sender};
 use std::thread::{self, JoinHandle};
 
 use super::arguments::{Axes, EndOptions, UnitArgument};
-use super::link::{CommandResult, Link};
+use super::link::CommandResult;
 use super::position::{Unit, group, position};
-use crate::link::Yrcx;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::motion::{self as robot, Target};
 use armctl_frame::robot::position::joint_table;
 

@@ -1,12 +1,8 @@
 //! `yrcx origin` (4.2.12): return to origin, of robots or of one axis.
 
-use clap::ValueEnum;
-
 use super::{MotionReport, execute_motion};
 use crate::arguments::UnitArgument;
-use crate::link::Yrcx;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_frame::wait_arguments::MotionEnd;
 
 /// Returns robots or one axis to origin.

@@ -1,13 +1,10 @@
 //! `yrcx push` (4.2.23): move of one axis with limited force and time.
 
-use std::time::Duration;
-
 use super::drive::Destination;
 use super::{FromMotion, Motion, MotionReport};
 use crate::arguments::SpeedArguments;
 use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
-use armctl_frame::settings::duration;
 
 /// Pushes with one axis.
 #[derive(Debug, Args)]

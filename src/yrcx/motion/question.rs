@@ -1,12 +1,9 @@
 //! Confirmation of a motion. Before the question, armctl reads the current position and the target of each axis.
 
 use crate::confirmed_write::mm;
-use crate::link::Link;
 use crate::position::Unit;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::table::Command;
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::gate::data_changed;
 
 /// Target of a motion.

@@ -1,14 +1,10 @@
 //! Requests to PROFIBUS stations. They do not lock a station.
 
-use std::time::Duration;
-
 use super::{check, connect};
 use crate::fieldbus::{BusBoard, Checked, ConnectionParameters};
-use crate::link_error::not_open;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::text::hex;
 use armctl_controller::yrcx::image::COMMAND_WORDS;
-use armctl_frame::face::layers::Layers;
 use armctl_frame::settings::target::Bus;
 use armctl_frame::settings::target::profibus::{Profibus, SCHEME};
 use armctl_transport::image::tap::Tap;

@@ -3,8 +3,7 @@
 
 use super::board::Board;
 use crate::fieldbus::{Checked, InLayer as _};
-use crate::prelude::*;
-use armctl_frame::face::layers::Layers;
+use crate::prelude::basics::*;
 use armctl_transport::profibus::port::latency_timer;
 
 /// Layers in the order of the check.

@@ -1,13 +1,8 @@
 //! Discovery of PROFIBUS stations on a line.
 
-use std::time::Duration;
-
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-
 use super::board::{Board, Station};
 use crate::fieldbus::{self, Device, Scope, bus_of, fields};
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::settings::target::profibus::SCHEME;
 use armctl_transport::image::tap::Tap;
 

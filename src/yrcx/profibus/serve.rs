@@ -2,7 +2,7 @@
 
 use super::simulated::{self, FAULTS, Options, Server};
 use crate::fieldbus::{Operator, RunningSimulation, Serve, ServeOptions};
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use crate::simulated::{faults, faults_of_option};
 use armctl_frame::serve::terminal_link::TerminalLink;
 use armctl_transport::profibus::rates::{RATES, Rate};

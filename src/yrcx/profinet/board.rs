@@ -1,13 +1,10 @@
 //! Requests to a PROFINET station that need no connection.
 
 use std::net::Ipv4Addr;
-use std::time::Duration;
 
 use super::{check, connect};
 use crate::fieldbus::{BusBoard, Checked, ConnectionParameters};
-use crate::link_error::not_open;
-use crate::prelude::*;
-use armctl_frame::face::layers::Layers;
+use crate::prelude::basics::*;
 use armctl_frame::settings::target::profinet::{Profinet, SCHEME};
 use armctl_transport::image::LinkError;
 use armctl_transport::image::tap::Tap;

@@ -1,13 +1,10 @@
 //! Layers of `armctl robots check` for a PROFINET device: from the interface to the image of the controller. The check
 //! opens a connection only to a simulator, because a real controller stops the robot when a connection ends.
 
-use std::time::Duration;
-
 use super::board::Board;
 use super::connect;
 use crate::fieldbus::{Checked, InLayer as _};
-use crate::prelude::*;
-use armctl_frame::face::layers::Layers;
+use crate::prelude::basics::*;
 use armctl_transport::image::{Event, ImageLink};
 use armctl_transport::profinet::commission::StationInfo;
 use armctl_transport::profinet::error::{ModuleMismatch, ProfinetError};

@@ -1,14 +1,8 @@
 //! Discovery of PROFINET stations on an interface.
 
-use std::time::Duration;
-
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-
 use super::station::Station;
 use crate::fieldbus::{self, Device, Scope, fields};
-use crate::link_error::not_open;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::settings::target::profinet::SCHEME;
 use armctl_transport::image::LinkError;
 use armctl_transport::image::tap::Tap;

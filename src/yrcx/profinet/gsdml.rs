@@ -1,9 +1,6 @@
 //! `yrcx profinet gsdml`.
 
-use std::path::PathBuf;
-
 use crate::prelude::*;
-use armctl_files as files;
 use armctl_frame::OfflineCommand;
 use armctl_transport::profinet::gsdml::{self, Gsdml, Head, SlottedModule};
 use armctl_transport::profinet::layout::Direction;

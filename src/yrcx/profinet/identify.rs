@@ -3,7 +3,6 @@
 use super::board::Board;
 use super::plan_search;
 use super::station::Station;
-use crate::link::Yrcx;
 use crate::prelude::*;
 
 /// Reads the identity of the station (DCP Identify). The station needs no IP address, and armctl opens no connection.

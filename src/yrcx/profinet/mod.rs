@@ -15,10 +15,7 @@ mod set;
 pub mod simulated;
 mod station;
 
-use serde_json::json;
-
 use super::connect::{Endpoint, endpoint};
-use super::link::Link;
 use crate::prelude::*;
 use armctl_controller::text;
 use armctl_frame::Offline;

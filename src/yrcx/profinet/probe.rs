@@ -1,14 +1,11 @@
 //! `yrcx profinet probe`.
 
 use std::collections::VecDeque;
-use std::time::Duration;
 
 use super::board::Board;
 use super::station::Station;
 use super::{connect, plan_search};
-use crate::link::Yrcx;
 use crate::prelude::*;
-use armctl_frame::output::csv::RowsOf;
 use armctl_transport::profinet::candidate_layouts;
 use armctl_transport::profinet::commission::Identity;
 use armctl_transport::profinet::error::ProfinetError;

@@ -2,8 +2,7 @@
 
 use super::simulated::{Controller, NAME, controller, layout, setup};
 use crate::fieldbus::{Operator, RunningSimulation, Serve, ServeOptions};
-use crate::link_error::not_open;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use crate::simulated::{faults, faults_of_option};
 use armctl_frame::settings::target::profinet::{self, SCHEME};
 use armctl_transport::fault::{FaultNames, FaultSpec, SimulatorFaults};

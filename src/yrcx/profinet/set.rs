@@ -2,11 +2,8 @@
 
 use std::net::Ipv4Addr;
 
-use serde_json::json;
-
 use super::board::Board;
 use super::{frame_for, plan_search, station_of};
-use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_frame::settings::target::profinet;
 use armctl_transport::profinet::commission::StationInfo;

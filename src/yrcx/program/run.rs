@@ -1,21 +1,14 @@
 //! `yrcx program run` (4.6.2): starts a program and optionally waits for its end.
 
-use std::time::Duration;
-
 use tokio::time::{Instant, timeout};
 
 use super::WhichOrAll;
 use crate::alarm;
 use crate::info::Part;
-use crate::link::{Link, Yrcx};
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::repeated_runs::{Cycle, Repeat, Runs};
 use armctl_frame::robot::alarm::{AlarmEntry, hint_after};
 use armctl_frame::robot::program::{Program, ProgramState};
-use armctl_frame::settings::duration;
-use armctl_frame::settings::target::Family;
 use armctl_frame::wait_arguments::ProgramEnd;
 
 /// Runs a program, or all registered programs. The controller answers when it has accepted the start.

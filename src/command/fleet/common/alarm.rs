@@ -1,7 +1,5 @@
 //! `armctl alarm list|history|watch|reset` for robots of any family.
 
-use std::time::Duration;
-
 use clap::Subcommand;
 
 use super::SharedVerbCommands;
@@ -11,7 +9,7 @@ use armctl_frame::face::shared_commands::SharedVerb;
 use armctl_frame::output::envelope::Envelope;
 use armctl_frame::prelude::*;
 use armctl_frame::robot::alarm::AllAlarms;
-use armctl_frame::settings::{alarms, duration};
+use armctl_frame::settings::alarms;
 use armctl_frame::watch::Changes;
 use armctl_frame::{AnyCommand, SchemaEntry};
 
@@ -86,7 +84,7 @@ impl Command for List {
         let Context { robot, link, screen, several, .. } = context;
         link.open_link(screen).await?;
         let found = match link {
-            Link::Open(face, connection) => face.alarms(&mut **connection).await?,
+            Link::Open(face, connection) => (face.alarms)(&mut **connection).await?,
             Link::Absent(absent) => return Err(absent.failure.clone()),
         };
         let mut alarms = Vec::with_capacity(found.len());

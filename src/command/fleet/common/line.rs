@@ -6,21 +6,15 @@ use std::collections::HashMap;
 use std::rc::Rc;
 use std::slice;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-use serde_json::Value;
-
-use super::PerRobot;
+use super::PER_ROBOT;
 use crate::command::families;
 use armctl_frame::command::AnyContext;
 use armctl_frame::face::family_command::{FamilyLine, ParsedCommand};
 use armctl_frame::gate::Intent;
 use armctl_frame::items::ItemError;
-use armctl_frame::names;
 use armctl_frame::output::csv::Sheet;
 use armctl_frame::prelude::*;
 use armctl_frame::report::sheet_of;
-use armctl_frame::settings::target::Family;
 use armctl_frame::{AnyCommand, AnyReport, Driver, Outcome};
 
 /// A parsed command, or the error.
@@ -88,8 +82,8 @@ impl AnyCommand for SharedLine {
         self.default_arguments(None).is_some_and(AnyCommand::is_endless)
     }
 
-    fn driver(&self) -> Option<&'static dyn Driver> {
-        Some(&PerRobot)
+    fn driver(&self) -> Option<&'static Driver> {
+        Some(&PER_ROBOT)
     }
 
     fn connect_mode(&self, robot: &Robot) -> ConnectMode {
@@ -198,8 +192,8 @@ fn parse_first(family: Family, lines: &[Vec<String>]) -> Parsed {
 /// Parses words into a command of a family.
 fn parse(family: Family, words: &[String]) -> Parsed {
     let face = families::of(family);
-    let parser = face.augment(clap::Command::new(family.name())).no_binary_name(true).disable_help_flag(true);
-    match parser.try_get_matches_from(words).and_then(|mut matches| face.read(&mut matches)) {
+    let parser = (face.augment)(clap::Command::new(family.name())).no_binary_name(true).disable_help_flag(true);
+    match parser.try_get_matches_from(words).and_then(|mut matches| (face.read)(&mut matches)) {
         Ok(FamilyLine { command: ParsedCommand::Command(command), .. }) => Ok(command),
         Ok(_) => Err(Failure::local("internal error: a shared line is a command of each family")),
         Err(error) => {

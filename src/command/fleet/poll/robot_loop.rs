@@ -1,10 +1,7 @@
 //! Polling loop of one robot.
 
 use std::collections::HashMap;
-use std::sync::Arc;
-use std::time::Duration;
 
-use serde_json::Value;
 use tokio::sync::watch;
 use tokio::time::{Instant, sleep_until, timeout};
 
@@ -63,11 +60,11 @@ pub(super) async fn follow(mut follower: RobotTask) {
             opened = async {
                 sleep_until(start).await;
                 let family = families::of(robot.family);
-                let robot = &open_shared_session(family.driver(), robot).await?;
+                let robot = &open_shared_session(family.driver, robot).await?;
                 let is_shared = is_held(robot);
                 let answers = follower.requests.borrow().answers.then(|| follower.answers.clone());
                 let access = Access { answers, ..Access::reading(ConnectMode::Monitor) };
-                let watch = family.watch(robot, access, screen).await?;
+                let watch = (family.watch)(robot, access, screen).await?;
                 Ok(Link { watch, is_shared, reported: Traffic::default() })
             } => opened,
         };

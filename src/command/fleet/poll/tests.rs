@@ -1,10 +1,6 @@
 //! Tests of the poller with in-process simulators, in virtual time.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 use std::rc::Rc;
-use std::sync::Arc;
-use std::time::Duration;
 
 use futures_util::future::join;
 use tempfile::TempDir;

@@ -1,20 +1,12 @@
 //! Addresses and credentials of the brokers, from the command line, files and the environment.
 
 use std::env;
-use std::fmt;
 use std::net::IpAddr;
-use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::sync::Arc;
-use std::time::Duration;
-
-use anyhow::Context as _;
-use clap::{Args, ValueEnum};
 
 use super::error_text;
 use super::uplink::{Endpoint, Hello, Identity, Tls, Trust, Version, Will};
-use armctl_files as files;
-use armctl_frame::failure::Failure;
+use armctl_frame::prelude::*;
 
 /// Keepalive interval of the connection.
 const KEEP_ALIVE: Duration = Duration::from_secs(30);

@@ -8,9 +8,7 @@ mod storage;
 use std::future::{Future, pending, ready};
 use std::io;
 use std::pin::pin;
-use std::time::Duration;
 
-use futures_util::FutureExt as _;
 use jiff::Timestamp;
 use tokio::task::JoinHandle;
 use tokio::time::{Instant, sleep_until, timeout, timeout_at};
@@ -25,9 +23,9 @@ use super::outbox::{Outbox, Ticket};
 use super::uplink::{Event, Loss, Message, Refusal, SendError, Will};
 use crate::command::fleet::poll::Event as Found;
 use crate::command::fleet::service::END_TIMEOUT;
-use armctl_frame::failure::{Failure, Kind, plain};
+use armctl_frame::failure::plain;
 use armctl_frame::output::log::Level;
-use armctl_frame::settings::duration;
+use armctl_frame::prelude::*;
 
 /// Limits of messages in transit: `WINDOW` of messages with acknowledgement, `UNCONFIRMED_WINDOW` of messages without
 /// acknowledgement.

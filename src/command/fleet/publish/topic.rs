@@ -4,7 +4,6 @@
 //! allowed, are written as `%` and the hex digits of each byte, as in URLs: `+`, `#`, `/`, `%`, control characters, and
 //! a leading `$`. Two names therefore never have the same topic, and the name can be decoded.
 
-use std::collections::BTreeSet;
 use std::str::FromStr;
 
 use armctl_frame::prelude::*;
@@ -196,7 +195,7 @@ pub fn identifier(text: &str) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use armctl_frame::settings::Sources;
-    use armctl_frame::settings::target::{Family, Target, TargetArgument};
+    use armctl_frame::settings::target::{Target, TargetArgument};
     use proptest::prelude::*;
 
     use super::*;

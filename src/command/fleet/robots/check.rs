@@ -40,7 +40,7 @@ impl Family for Checked {
     }
 
     fn addresses(robot: &Robot) -> Result<Vec<target::Address>, Failure> {
-        families::of(robot.family).driver().addresses(robot)
+        (families::driver(robot).addresses)(robot)
     }
 
     async fn close(_link: Access, _screen: &Screen) -> Result<(), Failure> {
@@ -76,7 +76,7 @@ pub struct CheckReport {
 impl CheckReport {
     /// Checks each layer of a robot.
     pub async fn of(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
-        let mut layers = families::of(robot.family).check(robot, access, screen).await?;
+        let mut layers = (families::of(robot.family).check)(robot, access, screen).await?;
         layers.extend(layers::drafts());
         Ok(Self { layers, family: robot.family.name() })
     }

@@ -1,11 +1,8 @@
 //! `armctl robots discover`: finds controllers on the network, and lists serial ports.
 
-use std::time::Duration;
-
 use clap::FromArgMatches as _;
 
 use armctl_frame::prelude::*;
-use armctl_frame::settings::duration;
 use armctl_toyo::ports::{self, Port};
 use armctl_yrcx::buses::Searches;
 use armctl_yrcx::discover::{self, FoundDevice};

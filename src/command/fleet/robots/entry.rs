@@ -3,18 +3,16 @@
 use toml_edit::{Array, Table, Value, value};
 
 use super::file::change;
-use armctl_controller::similar_word::nearest;
 use armctl_controller::text::Encoding;
 use armctl_controller::yerc::Model;
 use armctl_frame::Candidate;
 use armctl_frame::output::jq::failure_after_change;
 use armctl_frame::output::view;
 use armctl_frame::prelude::*;
-use armctl_frame::settings::duration;
 use armctl_frame::settings::inventory::{Entry, Inventory, is_name, named};
 use armctl_frame::settings::model::ModelSetting;
 use armctl_frame::settings::place;
-use armctl_frame::settings::target::{Family, Target, TargetArgument};
+use armctl_frame::settings::target::{Target, TargetArgument};
 
 /// Arguments of `robots add`.
 #[derive(Debug, Args)]
@@ -195,7 +193,7 @@ fn candidates() -> Vec<Candidate> {
     keys.chain(models.map(|model| Candidate::new(format!("model={model}"), "model of a yerc robot"))).collect()
 }
 
-fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(text: &str) -> Result<T, Failure> {
+fn parsed<T: std::str::FromStr<Err: fmt::Display>>(text: &str) -> Result<T, Failure> {
     text.parse::<T>().map_err(|why| invalid(why.to_string(), "see `armctl help inventory`"))
 }
 

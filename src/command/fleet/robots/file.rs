@@ -1,10 +1,5 @@
 //! Write access to `robots.toml`; only this module changes the file.
 
-use std::path::Path;
-
-use anyhow::Context as _;
-
-use armctl_files as files;
 use armctl_frame::output::busy_work::register;
 use armctl_frame::prelude::*;
 use armctl_frame::settings::document::{Document, DocumentError};
@@ -31,7 +26,7 @@ pub fn read(path: &Path) -> Result<String, Failure> {
 pub fn change(run: &Run, change: impl FnOnce(&mut Document) -> Result<(), DocumentError>) -> Result<String, Failure> {
     let path = path(run)?;
     replace(path, |text| {
-        let invalid = |why: &dyn std::fmt::Display| {
+        let invalid = |why: &dyn fmt::Display| {
             Failure::usage(format!("{}: {why}", path.display()))
                 .hint("correct the file with `armctl robots edit`; see `armctl help inventory`")
         };

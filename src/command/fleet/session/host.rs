@@ -1,13 +1,9 @@
 //! Session hosts in this process: for `session open`, or for the prompt and command files.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
 use std::rc::Rc;
-use std::sync::Arc;
 use std::thread::JoinHandle;
-use std::time::Duration;
 
-use anyhow::Context as _;
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::task::{JoinSet, LocalSet};
 
@@ -64,20 +60,20 @@ impl SessionHost {
         };
         let info = info(robot, access);
         let face = families::of(robot.family);
-        let HeldLink { held, finish } = face.open_session_link(robot, access, screen).await?;
+        let HeldLink { held, finish } = (face.open_session_link)(robot, access, screen).await?;
         let host =
             Host::new(claim, key, info, held, log.clone()).with_context(|| location.socket().display().to_string())?;
         let orphaned_robot = robot.clone();
-        let guardian = Rc::new(SessionGuardian::new(robot, face.stop()));
+        let guardian = Rc::new(SessionGuardian::new(robot, face.driver.stop));
         let guardian_result = Rc::clone(&guardian);
         let is_simulated = robot.target.value.is_simulated();
         let host = host.with_guard(move |moves| if is_simulated { Ok(()) } else { guardian_result.set_moving(moves) });
         let host = host.with_stop(move |why| {
             log(&format!("{why}: armctl stops the robot"));
-            guardian::stop_orphan(&orphaned_robot, face.stop(), log.clone());
+            guardian::stop_orphan(&orphaned_robot, face.driver.stop, log.clone());
         });
         let mut entry = WatchedEntry::new(robot);
-        let host = host.with_read_only_check(face.guard(), move || entry.is_read_only());
+        let host = host.with_read_only_check(face.guard, move || entry.is_read_only());
         Ok(OpenResult::SharedLink(Box::new(Self { host, guardian, finish, label: robot.label() })))
     }
 
@@ -183,7 +179,7 @@ async fn open_session_link(
         let (say, label) = (Arc::clone(&say), label.clone());
         move |text: &str| say(&format!("{label}: {text}"))
     };
-    let records = families::of(robot.family).session_records();
+    let records = families::of(robot.family).session_records;
     let own = |host| HeldBy::ThisProcess(OwnSession { key: own_key(&robot), host, records });
     // Robots with several addresses: another line has opened the link with another address.
     if let Some(host) = held.borrow().get(&key) {

@@ -1,7 +1,5 @@
 //! `armctl session list`: open sessions and their clients.
 
-use std::time::Duration;
-
 use jiff::Timestamp;
 
 use armctl_frame::prelude::*;

@@ -1,11 +1,8 @@
 //! Event loop of the teach panel: runs the command lines of keys, one motion at a time.
 
-use std::time::Duration;
-
 use futures_util::StreamExt as _;
-use futures_util::future::{FutureExt as _, LocalBoxFuture};
+use futures_util::future::FutureExt as _;
 use futures_util::stream::FuturesUnordered;
-use serde_json::Value;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep_until};
 

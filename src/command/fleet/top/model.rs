@@ -2,14 +2,12 @@
 //! samples, keys and the time. It has no terminal, no link and no clock.
 
 use std::collections::VecDeque;
-use std::time::Duration;
 
 use super::keys::KeyAction;
 use super::track::Track;
 use crate::command::fleet::poll::{Event, RobotId};
 use armctl_frame::face::sample::Sample;
 use armctl_frame::prelude::*;
-use armctl_frame::settings::target;
 
 /// Time since the view started.
 pub type Moment = Duration;
@@ -98,7 +96,7 @@ pub struct RobotRow {
     /// Name.
     pub name: String,
     /// Family.
-    pub family: target::Family,
+    pub family: Family,
     /// Target URL.
     pub place: String,
     tags: Vec<String>,

@@ -8,23 +8,17 @@ pub mod testing;
 
 use std::io::{self, Read};
 use std::net::{IpAddr, SocketAddr};
-use std::path::Path;
-use std::sync::Arc;
-use std::time::Duration;
 
-use anyhow::Context as _;
 use jiff::Timestamp;
 
 pub use self::report::Capture;
 use self::report::{Links, Problems, TOO_MANY_MESSAGES, count_text};
 use super::Field;
-use crate::Report as _;
 use crate::output::Format;
 use crate::output::busy_work::register;
 use crate::output::envelope::ErrorBody;
 use crate::prelude::basics::*;
 use crate::run::{Run, RunError};
-use armctl_files as files;
 use armctl_transport::capture::{Carrier, Message, OpenError, Summary, read_while};
 pub use armctl_transport::capture::{holds_telegram, parse_hex};
 use armctl_transport::tap::Direction;

@@ -8,10 +8,9 @@ use serde::ser::{Serialize, SerializeSeq as _, Serializer};
 
 use super::report::{COLUMNS, Capture, Extremes, Link, Links, MESSAGE, Problems, Row, message_cell};
 use super::{CaptureDecoder, DecodedCapture, DecodedMessage, Detail, ReportEnvelope, Source};
-use crate::Report as _;
 use crate::output::Format;
 use crate::output::busy_work::register;
-use crate::output::csv::{RowsOf, Sheet};
+use crate::output::csv::Sheet;
 use crate::output::render::{self, Layout};
 use crate::prelude::basics::*;
 use crate::run::{Run, RunError};
