@@ -72,9 +72,9 @@ fn named(name: &str) -> Selection {
 /// Intent of a line, and what the gate decides about it.
 struct LineIntent {
     intent: Intent,
-    alone: Result<(), Failure>,
-    read_only: Result<(), Failure>,
-    fleet: Result<(), Failure>,
+    alone: Result<()>,
+    read_only: Result<()>,
+    fleet: Result<()>,
 }
 
 fn observe(line: &str) -> Result<LineIntent, String> {
@@ -119,8 +119,7 @@ fn gate_checks_every_command() {
             }
         };
         let is_stop = STOPS.iter().any(|stop| line.starts_with(stop));
-        let refused =
-            |outcome: &Result<(), Failure>| outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Rejected);
+        let refused = |outcome: &Result<()>| outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Rejected);
         let is_when_known = intent.confirmation == Confirmation::WhenKnown;
         let is_asked = risk == Motion || risk == Destroy && !is_when_known;
         for (what, is_right) in [

@@ -31,7 +31,7 @@ pub async fn run(globals: Globals, rehearse: Rehearse) -> Result<(), RunError> {
     catch_interrupts();
     let folder = tempfile::tempdir().context("a temporary folder")?;
     let inventory = folder.path().join("robots.toml");
-    let entries = saved.iter().map(|robot| robot.entry(&robot.simulator_url()?)).collect::<Result<_, Failure>>()?;
+    let entries = saved.iter().map(|robot| robot.entry(&robot.simulator_url()?)).collect::<Result<_>>()?;
     std::fs::write(&inventory, inventory_text(&rehearse.from, entries)?).context("a temporary folder")?;
     let records = |robot: &SavedRobot| (robot.name.clone(), Rehearsal::new(rehearse.speed));
     let records: Rehearsals = Arc::new(saved.iter().map(records).collect());
@@ -132,7 +132,7 @@ impl Rehearsed<'_> {
     }
 
     /// Saves all robots below `time`.
-    async fn snapshots(&self, plan: &Plan<'_>, time: &str) -> Result<Vec<Snapshot>, Failure> {
+    async fn snapshots(&self, plan: &Plan<'_>, time: &str) -> Result<Vec<Snapshot>> {
         let mut snapshots = Vec::new();
         for SavedRobot { name, family, .. } in self.saved {
             let path = self.folder.join(time).join(name);
@@ -162,7 +162,7 @@ impl Rehearsed<'_> {
 }
 
 /// Runs a command that is not part of the rehearsal. Returns its data.
-async fn ask(plan: &Plan<'_>, words: Vec<String>) -> Result<Value, Failure> {
+async fn ask(plan: &Plan<'_>, words: Vec<String>) -> Result<Value> {
     let origin = Origin { file: "rehearse".into(), line: 1 };
     let planned = plan.words(&mut Parser::default(), words, "rehearse", &origin)?;
     let outcome = plan.run_lines(vec![planned]).await;

@@ -77,7 +77,7 @@ enum Next {
 }
 
 impl Repl {
-    fn new(globals: Globals, mut prefix: Vec<String>) -> Result<Self, Failure> {
+    fn new(globals: Globals, mut prefix: Vec<String>) -> Result<Self> {
         let family = prefix.first().and_then(|family| family.parse::<Family>().ok());
         let sources = sources(globals.clone(), Need::Inventory, true)?;
         let has_no_selection = sources.selection.is_empty() && sources.inventory.default.is_none();
@@ -255,7 +255,7 @@ impl Repl {
 }
 
 /// Reads the next line of a script; `None` at the end of the script.
-async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option<String>, Failure> {
+async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option<String>> {
     /// Maximum length of a line. Input without line ends is not a script.
     const MAX_LINE_LEN: u64 = 1 << 20;
 

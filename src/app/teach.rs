@@ -45,7 +45,7 @@ pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
 }
 
 /// Selects the robot of the panel. There must be exactly one.
-fn select_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
+fn select_robot(globals: &Globals, teach: &Teach) -> Result<Robot> {
     let sources = sources(globals.clone(), Need::Inventory, true)?;
     if sources.selection.sim && teach.family.is_none() {
         return Err(
@@ -59,7 +59,7 @@ fn select_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
     }
 }
 
-fn check_globals(globals: &Globals, screen: &Screen) -> Result<(), Failure> {
+fn check_globals(globals: &Globals, screen: &Screen) -> Result<()> {
     let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("teach {what}")).hint(hint));
     if globals.dry_run {
         return wrong(
@@ -111,7 +111,7 @@ impl Lines {
 }
 
 impl CommandRunner for Lines {
-    async fn run(&self, words: &[String]) -> Result<Value, Failure> {
+    async fn run(&self, words: &[String]) -> Result<Value> {
         let line = self.line(&words.join(" "));
         let results = line.results.clone().unwrap_or_default();
         let family = self.robot.family.name().to_owned();

@@ -44,7 +44,7 @@ pub struct AnyContext<'a> {
 
 impl<'a> AnyContext<'a> {
     /// Converts to the context of one family. The connection must belong to this family.
-    pub fn of<F: Family>(self) -> Result<Context<'a, F>, Failure> {
+    pub fn of<F: Family>(self) -> Result<Context<'a, F>> {
         let Self { robot, connection, screen, several, confirmer } = self;
         Ok(Context { robot, link: connection::link::<F>(connection)?, screen, several, confirmer })
     }
@@ -113,7 +113,7 @@ pub trait Command {
     }
 
     /// Runs the command without a robot, if it needs none.
-    fn run_alone(&self) -> Result<Self::Report, Failure> {
+    fn run_alone(&self) -> Result<Self::Report> {
         Err(Failure::local("internal error: this command needs a robot"))
     }
 
@@ -128,14 +128,14 @@ pub trait Command {
     }
 
     /// Outcome for a robot that did not answer before the end of `--for`.
-    fn without_answer(&self, _robot: &Robot, failure: Failure) -> Result<Self::Report, Failure> {
+    fn without_answer(&self, _robot: &Robot, failure: Failure) -> Result<Self::Report> {
         Err(failure)
     }
 
     /// Executes the command. In a dry run, requests that change something are recorded and count as successful. In a
     /// dry run, a read ends with the failure [`unknown`](super::dry_run::unknown). Unless the command handles this
     /// failure, the requests after the read are not planned.
-    async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
+    async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report>;
 }
 
 /// [`Command`] without its associated types, for the common run loop.
@@ -211,12 +211,7 @@ impl dyn AnyCommand + '_ {
     }
 
     /// Connects to a robot.
-    pub async fn connect(
-        &self,
-        robot: &Robot,
-        access: Access,
-        screen: &Screen,
-    ) -> Result<Box<dyn Connection>, Failure> {
+    pub async fn connect(&self, robot: &Robot, access: Access, screen: &Screen) -> Result<Box<dyn Connection>> {
         let driver = self.driver().ok_or_else(|| Failure::local("internal error: this command needs no robot"))?;
         (driver.connect)(robot, access, screen).await
     }

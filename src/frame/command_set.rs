@@ -13,7 +13,7 @@ pub trait OfflineCommand {
     const ID: &'static str;
 
     /// Executes the command.
-    fn run(&self, screen: &Screen) -> Result<Self::Report, Failure>;
+    fn run(&self, screen: &Screen) -> Result<Self::Report>;
 }
 
 /// An [`OfflineCommand`] as a member of a set of robot commands.

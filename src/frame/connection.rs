@@ -129,10 +129,10 @@ pub trait Family: Sized + 'static {
     const STOP: &'static [&'static str];
 
     /// Connects to the robot. A dry run opens no connection.
-    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Self::Link, Failure>;
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Self::Link>;
 
     /// Stops motion that this link started. Returns the result as a text, such as "the robot was stopped: HOLD is on".
-    async fn halt(link: &mut Self::Link) -> Result<String, Failure>;
+    async fn halt(link: &mut Self::Link) -> Result<String>;
 
     /// Whether the motion of this link is stopped even with `--on-interrupt leave`.
     fn needs_halt(_link: &Self::Link) -> bool {
@@ -143,7 +143,7 @@ pub trait Family: Sized + 'static {
     fn planned(link: &mut Self::Link) -> Plan;
 
     /// Checks, before a report is made, that all answers belong to the requests.
-    async fn settle(_link: &mut Self::Link) -> Result<(), Failure> {
+    async fn settle(_link: &mut Self::Link) -> Result<()> {
         Ok(())
     }
 
@@ -158,26 +158,26 @@ pub trait Family: Sized + 'static {
     }
 
     /// All addresses of a robot, resolved from its network; empty if robots of this family have only one address.
-    fn addresses(_robot: &Robot) -> Result<Vec<target::Address>, Failure> {
+    fn addresses(_robot: &Robot) -> Result<Vec<target::Address>> {
         Ok(Vec::new())
     }
 
     /// Closes the connection. With `-v`, prints statistics.
-    async fn close(link: Self::Link, screen: &Screen) -> Result<(), Failure>;
+    async fn close(link: Self::Link, screen: &Screen) -> Result<()>;
 }
 
 /// A connection to one robot of any family: [`Family`] without its associated types.
 pub trait Connection {
     /// See [`Family::halt`].
-    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>>;
+    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String>>;
     /// See [`Family::needs_halt`].
     fn needs_halt(&mut self) -> bool;
     /// See [`Family::planned`].
     fn planned(&mut self) -> Plan;
     /// See [`Family::settle`].
-    fn settle(&mut self) -> LocalBoxFuture<'_, Result<(), Failure>>;
+    fn settle(&mut self) -> LocalBoxFuture<'_, Result<()>>;
     /// See [`Family::close`].
-    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>>;
+    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<()>>;
     /// The link, whose type is [`Family::Link`].
     fn as_any(&mut self) -> &mut dyn Any;
 }
@@ -193,13 +193,13 @@ pub struct Driver {
     /// See [`Family::takes_one_client`].
     pub takes_one_client: fn(&Robot) -> bool,
     /// See [`Family::addresses`].
-    pub addresses: fn(&Robot) -> Result<Vec<target::Address>, Failure>,
+    pub addresses: fn(&Robot) -> Result<Vec<target::Address>>,
     /// See [`Family::connect`].
     pub connect: for<'a> fn(&'a Robot, Access, &'a Screen) -> Connecting<'a>,
 }
 
 /// Connection that is being opened.
-pub type Connecting<'a> = LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>>;
+pub type Connecting<'a> = LocalBoxFuture<'a, Result<Box<dyn Connection>>>;
 
 /// The driver of a family.
 pub const fn driver<F: Family>() -> &'static Driver {
@@ -223,7 +223,7 @@ impl<F: Family> Driving<F> {
 }
 
 /// The link of a family, from a connection. A connection of another family is an internal error.
-pub fn link<F: Family>(connection: &mut dyn Connection) -> Result<&mut F::Link, Failure> {
+pub fn link<F: Family>(connection: &mut dyn Connection) -> Result<&mut F::Link> {
     let link = connection.as_any().downcast_mut();
     link.ok_or_else(|| Failure::local("internal error: this connection belongs to another family"))
 }
@@ -246,7 +246,7 @@ impl<F: Family> Linked<'_, F> {
 }
 
 impl<F: Family> Connection for Linked<'_, F> {
-    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>> {
+    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String>> {
         F::halt(self.link()).boxed_local()
     }
 
@@ -258,11 +258,11 @@ impl<F: Family> Connection for Linked<'_, F> {
         F::planned(self.link())
     }
 
-    fn settle(&mut self) -> LocalBoxFuture<'_, Result<(), Failure>> {
+    fn settle(&mut self) -> LocalBoxFuture<'_, Result<()>> {
         F::settle(self.link()).boxed_local()
     }
 
-    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
+    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<()>> {
         match *self {
             Self::Owned(link) => F::close(link, screen).boxed_local(),
             Self::Borrowed(_) => async { Ok(()) }.boxed_local(),

@@ -32,11 +32,11 @@ pub fn is_end(failure: &Failure) -> bool {
 /// Answers that may be missing, for a command that can continue without them.
 pub trait Known<T> {
     /// Returns the answer; `None` in a dry run.
-    fn known(self) -> Result<Option<T>, Failure>;
+    fn known(self) -> Result<Option<T>>;
 }
 
-impl<T> Known<T> for Result<T, Failure> {
-    fn known(self) -> Result<Option<T>, Failure> {
+impl<T> Known<T> for Result<T> {
+    fn known(self) -> Result<Option<T>> {
         match self {
             Err(failure) if failure.kind == Kind::DryRun => Ok(None),
             answered => answered.map(Some),

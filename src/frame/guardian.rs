@@ -14,14 +14,16 @@ use std::ffi::OsString;
 use std::io::{self, Read as _, Write as _};
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
+use anyhow::Context as _;
 use tokio::time::{MissedTickBehavior, interval};
 
-use crate::output::{ColorChoice, Format};
-use crate::prelude::basics::*;
+use crate::failure::{Failure, Kind};
+use crate::output::{ColorChoice, Format, Screen};
+use crate::settings::Robot;
 use armctl_files::own_command;
 #[cfg(windows)]
 use armctl_transport::session::terminate;

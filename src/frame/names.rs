@@ -196,7 +196,7 @@ pub fn candidates(robots: &[Robot], kinds: &[Kind], ending: &str) -> Vec<Candida
 }
 
 /// Names of a robot that contain a text, or all names of the robot.
-pub fn list(robot: &Robot, filter: Option<&str>) -> Result<Listing, Failure> {
+pub fn list(robot: &Robot, filter: Option<&str>) -> Result<Listing> {
     let all = robot.names.all();
     if let Some(damage) = &all.damage {
         return Err(damage.clone());

@@ -43,7 +43,7 @@ impl fmt::Display for Origin {
 
 impl Line {
     /// Opens the link to a robot for later lines.
-    pub async fn hold(&self, robot: &Robot, trace: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
+    pub async fn hold(&self, robot: &Robot, trace: Option<&Path>, screen: &Screen) -> Result<()> {
         let trace = trace.map(Path::to_owned);
         let access = Access { trace, ..Access::reading(ConnectMode::Control) };
         self.connect(robot, access, screen).await.map(|_| ())
@@ -51,7 +51,7 @@ impl Line {
 
     /// Opens the link for later lines if the command needs a link. The link to a simulator is always kept open, because
     /// the simulator exists only as long as its link. Returns the access for the command.
-    pub async fn connect(&self, robot: &Robot, access: Access, screen: &Screen) -> Result<Access, Failure> {
+    pub async fn connect(&self, robot: &Robot, access: Access, screen: &Screen) -> Result<Access> {
         let access = Access { typed: Some(Arc::clone(&self.typed)), ..access };
         let needs_link = access.mode == ConnectMode::Control || robot.target.value.is_simulated();
         if !needs_link || robot.sessions == Sessions::None {

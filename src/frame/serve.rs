@@ -30,7 +30,7 @@ pub trait Serve: Sized {
     type Server: Server + 'static;
 
     /// Starts to listen.
-    async fn start(self) -> Result<Started<Self>, Failure>;
+    async fn start(self) -> Result<Started<Self>>;
 }
 
 /// A simulator that listens.
@@ -209,7 +209,7 @@ impl<R: AsyncRead + Unpin> Console<R> {
     }
 
     /// Next line; `None` at the end.
-    async fn next(&mut self) -> Result<Option<String>, Failure> {
+    async fn next(&mut self) -> Result<Option<String>> {
         let room = u64::try_from(Self::MAX_LINE_LEN.saturating_sub(self.buffered.len())).unwrap_or_default();
         (&mut self.input).take(room).read_until(b'\n', &mut self.buffered).await.context("stdin")?;
         if self.buffered.len() >= Self::MAX_LINE_LEN {
@@ -222,7 +222,7 @@ impl<R: AsyncRead + Unpin> Console<R> {
 }
 
 /// Next line of the console, if there is a console.
-async fn next_line<R: AsyncRead + Unpin>(console: &mut Option<Console<R>>) -> Result<Option<String>, Failure> {
+async fn next_line<R: AsyncRead + Unpin>(console: &mut Option<Console<R>>) -> Result<Option<String>> {
     match console {
         Some(console) => console.next().await,
         None => std::future::pending().await,

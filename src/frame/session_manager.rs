@@ -35,7 +35,7 @@ pub enum ManagerRequest {
         /// Screen for notes.
         screen: Screen,
         /// Channel for the result.
-        done: oneshot::Sender<Result<HeldBy, Failure>>,
+        done: oneshot::Sender<Result<HeldBy>>,
     },
     /// Close all links, and report when they are closed.
     End(oneshot::Sender<()>),
@@ -81,7 +81,7 @@ impl SessionManager {
     }
 
     /// Keeps the link to a robot open, and returns which process has the link.
-    pub async fn hold(&self, robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldBy, Failure> {
+    pub async fn hold(&self, robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldBy> {
         if let Some(session) = self.held(&own_key(robot)) {
             return Ok(HeldBy::ThisProcess(session));
         }

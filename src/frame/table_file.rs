@@ -42,7 +42,7 @@ impl SheetManner {
     }
 
     /// File for the rows of one robot.
-    pub fn target(&self, file: PathBuf, several: bool) -> Result<SheetTarget, Failure> {
+    pub fn target(&self, file: PathBuf, several: bool) -> Result<SheetTarget> {
         if several {
             return Err(text_files::of_one_robot(&file));
         }
@@ -70,7 +70,7 @@ impl SheetTarget {
         columns: &[Column],
         rows: &[Vec<String>],
         canonical: impl Fn(&str) -> String,
-    ) -> Result<String, Failure> {
+    ) -> Result<String> {
         let text = match &self.old {
             None => write(self.dialect, columns, rows),
             Some(old) => {

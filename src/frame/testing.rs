@@ -43,7 +43,7 @@ pub fn planned<F: Family>(
     robot: &Robot,
     command: &dyn AnyCommand,
     prepare: impl FnOnce(&mut F::Link),
-) -> Result<Value, Failure> {
+) -> Result<Value> {
     let intent = command.intent(Some(robot));
     let grant = Grant::up_to(intent.initial_risk());
     let access = Access { grant: grant.clone(), dry_run: true, ..Access::reading(command.connect_mode(robot)) };
@@ -94,7 +94,7 @@ pub fn parse(face: &Face, target: &str, words: &[&str]) -> Result<(Globals, Fami
 }
 
 /// Robot and command of a line.
-pub fn resolve(face: &Face, target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
+pub fn resolve(face: &Face, target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>)> {
     let (globals, typed) = parse(face, target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: globals.target, ..Selection::default() };
     let flags = Options { encoding: globals.encoding, ..Options::default() };
@@ -121,10 +121,7 @@ pub fn for_lines<T>(cases: impl IntoIterator<Item = (&'static str, T)>, check: i
 
 /// Each line is a usage error, of the parser or of the dry run, with this part in its message.
 #[track_caller]
-pub fn rejects(
-    plan: impl Fn(&[&str]) -> Result<Value, Failure>,
-    cases: impl IntoIterator<Item = (&'static str, &'static str)>,
-) {
+pub fn rejects(plan: impl Fn(&[&str]) -> Result<Value>, cases: impl IntoIterator<Item = (&'static str, &'static str)>) {
     for_lines(cases, |line, words, part| {
         let failure = plan(words).expect_err(line);
         assert_eq!(failure.kind, Kind::Usage, "{line}: {failure}");

@@ -60,7 +60,7 @@ pub trait Watchable: Command {
     const WATCHED: Watched;
 
     /// Waits until a new read can give new values.
-    async fn changed(&self, _link: &mut <Self::Family as Family>::Link) -> Result<(), Failure> {
+    async fn changed(&self, _link: &mut <Self::Family as Family>::Link) -> Result<()> {
         tokio::time::sleep(POLL_INTERVAL).await;
         Ok(())
     }
@@ -90,7 +90,7 @@ impl<C: Watchable + Args> Command for Watch<C> {
         true
     }
 
-    async fn run(&self, context: Context<'_, C::Family>) -> Result<Changes<C::Value>, Failure> {
+    async fn run(&self, context: Context<'_, C::Family>) -> Result<Changes<C::Value>> {
         let Context { robot, link, screen, several, confirmer } = context;
         loop {
             if self.before.borrow().is_some() {

@@ -22,7 +22,7 @@ use armctl_transport::session::location::Claim;
 use armctl_transport::stream::Stream;
 
 /// Endpoint of a target.
-fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
+fn endpoint(robot: &Robot) -> Result<Endpoint> {
     match &robot.target.value.place {
         Place::Serial(target::Serial { path, baud, data_bits, parity, stop_bits }) => {
             Ok(Endpoint::Serial(serial::Line {
@@ -58,7 +58,7 @@ pub fn options(robot: &Robot, access: &Access) -> Options {
 }
 
 /// Connects to the target of a robot.
-pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Client, Failure> {
+pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Client> {
     let options = options(robot, access);
     if access.dry_run {
         return Ok(Client::dry_run(options));
@@ -89,7 +89,7 @@ struct Connector {
 
 impl Connector {
     /// Opens the line, or joins the session that has already opened it.
-    async fn open(&self) -> Result<Line, Failure> {
+    async fn open(&self) -> Result<Line> {
         let Self { endpoint, robot, access, screen, claim } = self;
         if lock_writer(claim).is_none() {
             match lock_or_attach(robot, access, screen).await? {
@@ -103,7 +103,7 @@ impl Connector {
 
 /// Opens a line for a session. The session opens it again after a loss. An open line does not prove that there is a
 /// controller, so a first request checks this.
-pub async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
+pub async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink> {
     let robot = Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Toyo::connect(&robot, access.clone(), screen).await?;
     overview(&mut link).await?;

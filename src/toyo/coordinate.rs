@@ -79,7 +79,7 @@ impl Command for Set {
         self.in_words(&axes.collect::<Vec<_>>().join(", "))
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport> {
         let Self { values, task, speed } = self;
         let Context { link, confirmer, .. } = context;
         let letters = link.letters().await?;

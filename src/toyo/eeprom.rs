@@ -52,7 +52,7 @@ impl Link {
     /// # Errors
     /// Like [`Link::ask`]. [`Kind::OutcomeUnknown`] if the cell cannot be read back, and [`Kind::Malformed`] if it has
     /// another value after the write.
-    pub async fn store(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<Option<Record>, Failure> {
+    pub async fn store(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<Option<Record>> {
         if self.is_dry_run() {
             self.plan(&cell.read, STORED_VALUE);
             return self.plan_overwriting(&cell.read, &cell.write.text()).await.map(|()| None);
@@ -68,7 +68,7 @@ impl Link {
 
     /// In a dry run, records the requests of [`Link::overwrite`] for a cell that differs: the block that writes it, in
     /// which `?` stands for values that are kept, and the request that reads it back.
-    pub async fn plan_overwriting(&mut self, read: &Request, write: &str) -> Result<(), Failure> {
+    pub async fn plan_overwriting(&mut self, read: &Request, write: &str) -> Result<()> {
         self.plan_order(write, DIFFERS).await?;
         self.plan_if(read, DIFFERS);
         Ok(())
@@ -78,7 +78,7 @@ impl Link {
     ///
     /// # Errors
     /// Like [`Link::store`].
-    pub async fn overwrite(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<(), Failure> {
+    pub async fn overwrite(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<()> {
         self.ask(&cell.write).await?;
         if let Some(warning) = self.write_log.written(cell.read.text().trim_start_matches('@')) {
             screen.note(&format!("warning: {warning}"));
@@ -96,7 +96,7 @@ impl Link {
 
     /// Reads data that only some controllers have. Returns `None` if the request is refused twice. A busy controller
     /// also refuses, so a single refusal is not enough.
-    pub async fn read_if_present(&mut self, request: &Request) -> Result<Option<Record>, Failure> {
+    pub async fn read_if_present(&mut self, request: &Request) -> Result<Option<Record>> {
         for _ in 0..2 {
             if let Ok(content) = self.try_ask(request).await? {
                 return Ok(Some(content));

@@ -55,12 +55,12 @@ pub trait Kind: Debug + Send + Sync + 'static {
     }
 
     /// Request that reads a row.
-    fn read(row: i32) -> Result<Request, Failure> {
+    fn read(row: i32) -> Result<Request> {
         Request::read_parameter(parameter(Self::TABLE), Some(row)).map_err(|error| wrong(&error))
     }
 
     /// EEPROM cell of a row with these values.
-    fn cell(row: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+    fn cell(row: i32, values: Vec<Value>) -> Result<Cell> {
         row_cell(parameter(Self::TABLE), row, values)
     }
 
@@ -78,7 +78,7 @@ fn parameter(id: &str) -> &'static Parameter {
 }
 
 /// EEPROM cell of a row of a parameter that is a table.
-pub fn row_cell(table: &'static Parameter, row: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+pub fn row_cell(table: &'static Parameter, row: i32, values: Vec<Value>) -> Result<Cell> {
     let values = std::iter::once(Value::Number(row)).chain(values).collect();
     parameter_cell(table, values).map_err(|error| wrong(&error))
 }
@@ -141,7 +141,7 @@ impl<K: Kind> Store for Rows<K> {
         row.to_string()
     }
 
-    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self> {
         Ok(Self::default())
     }
 
@@ -169,8 +169,8 @@ impl<K: Kind> Store for Rows<K> {
         unlisted(record)
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, rows: &[i32]) -> Result<Answers<Record>, Failure> {
-        let requests = rows.iter().copied().map(K::read).collect::<Result<Vec<Request>, Failure>>()?;
+    async fn read(&self, link: &mut Link, screen: &Screen, rows: &[i32]) -> Result<Answers<Record>> {
+        let requests = rows.iter().copied().map(K::read).collect::<Result<Vec<Request>>>()?;
         let what = format!("reading {}", K::WORDS.nouns[1]);
         Ok(Answers::of(read_each(link, screen, &what, &requests).await?))
     }
@@ -181,11 +181,11 @@ impl<K: Kind> EepromRow for Rows<K> {
         K::body()
     }
 
-    fn request(&self, row: i32) -> Result<Request, Failure> {
+    fn request(&self, row: i32) -> Result<Request> {
         K::read(row)
     }
 
-    fn cell(&self, row: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+    fn cell(&self, row: i32, values: Vec<Value>) -> Result<Cell> {
         K::cell(row, values)
     }
 
@@ -205,7 +205,7 @@ pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
     }
 
     /// Expands words of a command line. For example, the name of a file is replaced by the values in the file.
-    fn words(&self, words: &[String]) -> Result<Vec<String>, Failure> {
+    fn words(&self, words: &[String]) -> Result<Vec<String>> {
         Ok(words.to_vec())
     }
 
@@ -213,16 +213,16 @@ pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
     fn body(&self, key: Self::Key) -> Layout;
 
     /// Request that reads a row.
-    fn request(&self, key: Self::Key) -> Result<Request, Failure>;
+    fn request(&self, key: Self::Key) -> Result<Request>;
 
     /// EEPROM cell of a row with these values.
-    fn cell(&self, key: Self::Key, values: Vec<Value>) -> Result<Cell, Failure>;
+    fn cell(&self, key: Self::Key, values: Vec<Value>) -> Result<Cell>;
 
     /// Block that writes a row. `?` stands for values that are kept.
     fn sketch(&self, key: Self::Key, values: &[Option<Value>]) -> String;
 
     /// Checks that the values of a row are consistent.
-    fn check(&self, _key: Self::Key, _values: &[Value]) -> Result<(), Failure> {
+    fn check(&self, _key: Self::Key, _values: &[Value]) -> Result<()> {
         Ok(())
     }
 
@@ -253,7 +253,7 @@ macro_rules! writable {
         values.collect::<Result<_, _>>().map(Changes::of)
     }
 
-    fn typed(&self, key: Self::Key, words: &[String]) -> Result<Changes, Failure> {
+    fn typed(&self, key: Self::Key, words: &[String]) -> Result<Changes> {
         let what = as_requested(Self::WORDS.nouns[0], &Self::name(key));
         let changes = Changes::read(&what, &self.body(key), &self.letters(), &self.words(words)?)?;
         if let Some(values) = changes.whole() {
@@ -262,7 +262,7 @@ macro_rules! writable {
         Ok(changes)
     }
 
-    fn complete_draft(&self, key: Self::Key, changes: &Changes, old: Option<&Record>) -> Result<Record, Failure> {
+    fn complete_draft(&self, key: Self::Key, changes: &Changes, old: Option<&Record>) -> Result<Record> {
         let values = match (changes.whole(), old) {
             (Some(values), _) => values,
             (None, Some(old)) => changes.merged_with(old)?,
@@ -284,7 +284,7 @@ macro_rules! writable {
         order.into_iter().map(|index| vec![index]).collect()
     }
 
-    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<()> {
         let mut rows: Vec<&Row<Self>> = rows.iter().collect();
         rows.sort_by_key(|(key, _)| Self::rank(*key));
         for (key, changes) in rows {
@@ -293,7 +293,7 @@ macro_rules! writable {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<()> {
         for (key, _, new) in rows {
             let fields = self.body(*key).fields.len();
             let values = new.values()[new.values().len().saturating_sub(fields)..].to_vec();

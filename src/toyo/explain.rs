@@ -62,7 +62,7 @@ impl face::Explain for Explain {
     type Report = Explanation;
     const ID: &'static str = "explain.toyo";
 
-    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Explanation, Failure> {
+    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Explanation> {
         let code = match self.subject {
             Subject::Code(code) => code,
             Subject::Instruction(row) => {

@@ -49,7 +49,7 @@ impl Declaration for Toyo {
     const GUARD: Guard =
         Guard { is_harmless_data: read_only_filter::only_reads_or_stops, is_harmless_image: |_, _| false };
     const DISSECTOR: fn() -> String = super::wireshark::dissector;
-    const TWIN: fn(&Path) -> Result<Self::Start, Failure> = super::backup::twin::start;
+    const TWIN: fn(&Path) -> Result<Self::Start> = super::backup::twin::start;
     const ALARMS: fn(&mut Link) -> Work<'_, Vec<Alarm>> = |link| alarm::present_alarms(link).boxed_local();
     const TRAFFIC: fn(&Link) -> Traffic = Link::traffic;
     const OVERVIEW: fn(&mut Link) -> Work<'_, OverviewReport> = |link| overview::overview(link).boxed_local();
@@ -87,7 +87,7 @@ impl Backups for Toyo {
         if robot.read_only.value { Risk::Read } else { Self::BACKUP_RISK }
     }
 
-    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport> {
         let current_task = context.robot.read_only.value;
         if current_task {
             context.screen.note(&format!(
@@ -99,7 +99,7 @@ impl Backups for Toyo {
         back_up(context, making, current_task).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport> {
         restore(context, restoring).await
     }
 }

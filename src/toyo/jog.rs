@@ -59,7 +59,7 @@ fn parse_axis(text: &str) -> Result<Axis, String> {
 
 impl Axis {
     /// Index of the axis, 0 to 3, on a machine with these letters.
-    fn index(&self, letters: Letters) -> Result<usize, Failure> {
+    fn index(&self, letters: Letters) -> Result<usize> {
         match self {
             Self::Index(index) => Ok(*index),
             Self::Letter(letter) => letters.axis(letter).ok_or_else(|| {
@@ -377,7 +377,7 @@ impl Command for Jog {
     }
 
     /// Reads the letters of the axes first, because the user can name an axis by its letter.
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<JogReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<JogReport> {
         if self.within.is_some() && self.speed == Speed::Inch {
             return Err(Failure::usage("an inching step has no duration")
                 .hint("remove --for, or use --steps for several steps"));

@@ -55,12 +55,7 @@ pub fn saturated_byte(record: &Record, name: &str) -> u8 {
 }
 
 /// Reads several values in order. The first refusal or failure ends the work. A dry run records all requests.
-pub async fn ask_all(
-    link: &mut Link,
-    screen: &Screen,
-    what: &str,
-    requests: &[Request],
-) -> Result<Vec<Record>, Failure> {
+pub async fn ask_all(link: &mut Link, screen: &Screen, what: &str, requests: &[Request]) -> Result<Vec<Record>> {
     link.plan_all(requests)?;
     let mut progress = (requests.len() > 1).then(|| screen.items_progress(what, requests.len() as u64));
     let mut answers = Vec::with_capacity(requests.len());
@@ -74,7 +69,7 @@ pub async fn ask_all(
 }
 
 /// Reads a value back after a command. A dry run records the request.
-pub async fn read_back(link: &mut Link, order: &Request, read: &Request) -> Result<Record, Failure> {
+pub async fn read_back(link: &mut Link, order: &Request, read: &Request) -> Result<Record> {
     link.ask(read).await.map_err(|failure| {
         let message = format!(
             "the controller accepted {}, but the value could not be read back: {}",

@@ -20,7 +20,7 @@ impl Command for Position {
     type Report = Positions;
     const ID: &'static str = "toyo.position";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Positions, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Positions> {
         let link = context.link;
         let letters = link.letters().await?;
         let record = link.ask(&Request::bare(table::Command::Mpst)).await?;

@@ -24,7 +24,7 @@ pub struct Copy {
 
 impl Copy {
     /// Copies the program after a confirmation, if source and target differ. Then reads the target back.
-    pub async fn make(self, link: &mut Link, screen: &Screen, confirmer: &Confirmer<'_>) -> Result<Copied, Failure> {
+    pub async fn make(self, link: &mut Link, screen: &Screen, confirmer: &Confirmer<'_>) -> Result<Copied> {
         let Self { what, from, to, order, reads: [source, target] } = self;
         if from == to {
             return Err(

@@ -32,7 +32,7 @@ pub trait Kind: Debug + 'static {
     /// Field of the program number.
     fn field() -> &'static Field;
     /// Requests that read a whole program.
-    fn reads(program: i32) -> Result<Vec<Request>, Failure>;
+    fn reads(program: i32) -> Result<Vec<Request>>;
 }
 
 /// Copy a program to another number, if the two programs differ.
@@ -63,7 +63,7 @@ impl<K: Kind> Command for Copy<K> {
     const INTENT: &'static str = K::INTENT;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied> {
         let Self { from, to, .. } = *self;
         let order = Request::new(K::COMMANDS[0], vec![Value::Number(from), Value::Number(to)]);
         let order = order.map_err(|error| wrong(&error))?;
@@ -78,7 +78,7 @@ impl<K: Kind> Command for Select<K> {
     const ID: &'static str = K::IDS[1];
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport> {
         let (link, order) = (context.link, Request::of(K::COMMANDS[1], [Value::Number(self.program)]));
         let selection_read = Request::bare(K::COMMANDS[2]);
         let old = Old::read(link.before(&selection_read).await?.and_then(|record| record.number("program")));

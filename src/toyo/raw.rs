@@ -69,7 +69,7 @@ impl Command for Raw {
         format!("send {} ({about})", self.block.text())
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Exchange, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Exchange> {
         let link = context.link;
         let answer = match &self.block {
             Block::Known(request) => {

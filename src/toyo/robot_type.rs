@@ -37,7 +37,7 @@ impl Command for RobotType {
         Confirmation::Word("type")
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<RobotTypeReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<RobotTypeReport> {
         let Self { axis, robot_type } = *self;
         let order = Request::of(table::Command::Type, [Value::Number(axis), Value::Number(robot_type)]);
         let Some(answer) = context.link.ask(&order).await.known()? else {

@@ -60,7 +60,7 @@ impl Command for Sequential {
         }
     }
 
-    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
+    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport> {
         if self.repeat.repeat.is_some() && self.step.is_none() {
             return Err(Failure::usage("--repeat needs the first step of each run")
                 .hint("type the step, for example `toyo run sequential 1 --repeat 20`; nothing was started"));
@@ -104,7 +104,7 @@ impl<K: ProgramKind> Command for Numbered<K> {
         format!("run {program}{}", self.repeat.describe())
     }
 
-    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
+    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport> {
         let program = self.number.or(self.program);
         let [_, select, progress, start] = K::COMMANDS;
         confirm_start(&mut context, Change::new(self.intent()), Program::Numbered(K::WORD, progress, program)).await?;
@@ -140,7 +140,7 @@ impl Command for Point {
         format!("move the axes to point {} of the coordinate table", self.point)
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<PointMoveReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<PointMoveReport> {
         let Context { link, confirmer, .. } = context;
         let (mut from, mut to) = (None, None);
         if confirmer.asks_user() {
@@ -198,19 +198,14 @@ impl Report for PointMoveReport {
 
 impl Point {
     /// Reads the position of the point; `None` if the controller refuses to report it.
-    async fn read_point(&self, link: &mut Link) -> Result<Option<Coordinates>, Failure> {
+    async fn read_point(&self, link: &mut Link) -> Result<Option<Coordinates>> {
         let request = Request::read_parameter(point_table(), Some(self.point)).map_err(|error| wrong(&error))?;
         let letters = link.letters().await?;
         Ok(link.try_ask(&request).await?.ok().map(|record| Coordinates::of(&record, letters)))
     }
 
     /// Change to confirm: the current position and the target of each axis.
-    async fn change(
-        &self,
-        link: &mut Link,
-        current: Coordinates,
-        target: Option<Coordinates>,
-    ) -> Result<Change, Failure> {
+    async fn change(&self, link: &mut Link, current: Coordinates, target: Option<Coordinates>) -> Result<Change> {
         let letters = link.letters().await?;
         let percent = saturated_byte(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
         let mut change = Change::new(Command::intent(self));
@@ -239,7 +234,7 @@ enum Program {
 
 impl Program {
     /// Describes the program and its step, for the confirmation.
-    async fn note(&self, link: &mut Link) -> Result<String, Failure> {
+    async fn note(&self, link: &mut Link) -> Result<String> {
         match self {
             Self::Sequential(step) => {
                 let task = task_selection::select_task(link, None).await?;
@@ -259,11 +254,7 @@ impl Program {
 }
 
 /// Program and step that will start: `selected`, or the program and step that the controller reports.
-async fn progress(
-    link: &mut Link,
-    question: table::Command,
-    (kind, selected): (&str, Option<i32>),
-) -> Result<String, Failure> {
+async fn progress(link: &mut Link, question: table::Command, (kind, selected): (&str, Option<i32>)) -> Result<String> {
     let Ok(progress) = link.try_ask(&Request::bare(question)).await? else {
         let number = selected.map(|number| format!(" {number}")).unwrap_or_default();
         return Ok(format!("It is {kind} program{number}; the controller did not report the step."));
@@ -278,7 +269,7 @@ async fn progress(
 }
 
 /// Asks for confirmation. The question has the number and step of the program, the position and the speed.
-async fn confirm_start(context: &mut Context<'_, Toyo>, change: Change, program: Program) -> Result<(), Failure> {
+async fn confirm_start(context: &mut Context<'_, Toyo>, change: Change, program: Program) -> Result<()> {
     let Context { link, confirmer, .. } = context;
     let mut change = change;
     if confirmer.asks_user() {
@@ -300,7 +291,7 @@ async fn start_and_wait(
     start: &Request,
     limit: Option<Option<Duration>>,
     repeat: Repeat,
-) -> Result<RunReport, Failure> {
+) -> Result<RunReport> {
     let Context { link, screen, .. } = context;
     let mut runs = Runs::new(repeat);
     // A repeated run must also wait for the end of the program.
@@ -333,10 +324,7 @@ async fn start_and_wait(
 }
 
 /// Waits for the end, up to a time limit. After the time limit, the program continues.
-async fn within(
-    limit: Option<Duration>,
-    end: impl Future<Output = Result<RunReport, Failure>>,
-) -> Result<RunReport, Failure> {
+async fn within(limit: Option<Duration>, end: impl Future<Output = Result<RunReport>>) -> Result<RunReport> {
     let Some(limit) = limit else { return end.await };
     tokio::time::timeout(limit, end).await.unwrap_or_else(|_| {
         let message = format!("{DONE}, and the program still runs after {}", duration::display(limit));
@@ -345,7 +333,7 @@ async fn within(
     })
 }
 
-async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: Letters) -> Result<RunReport, Failure> {
+async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: Letters) -> Result<RunReport> {
     let work = AcceptedWork { work: Work::Program, order, done: DONE, doing: "running" };
     let ended = work.wait(link, screen, letters).await.known()?;
     let Some(End { coordinates, elapsed_ms, is_paused }) = ended else { return Err(plan_end(link, order)) };
@@ -380,7 +368,7 @@ fn plan_end(link: &mut Link, order: table::Command) -> Failure {
 const DONE: &str = "the start was accepted";
 
 /// Whether a program is paused as intended: after a STOP step, or in step mode.
-async fn is_at_stop_instruction(link: &mut Link, last: Option<&(i32, String)>) -> Result<bool, Failure> {
+async fn is_at_stop_instruction(link: &mut Link, last: Option<&(i32, String)>) -> Result<bool> {
     if link.status_of(&[2]).await?.run_mode() == Some(RunMode::Step) {
         return Ok(true);
     }

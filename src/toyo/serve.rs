@@ -75,7 +75,7 @@ impl serve::Serve for Serve {
     type Report = Serving;
     type Server = Toyo;
 
-    async fn start(self) -> Result<Started<Self>, Failure> {
+    async fn start(self) -> Result<Started<Self>> {
         let start = simulated::start(self.state.as_deref(), self.from.as_deref(), self.axes, self.fault.as_ref())?;
         let start = start.with_options(RunOptions { speed: self.speed, motions: None });
         let (start, replay) = self.replay.apply(start, Family::Toyo)?;

@@ -13,7 +13,7 @@ pub fn start(
     from: Option<&Path>,
     axes: Option<u8>,
     faults: Option<&LineFaultSpec>,
-) -> Result<Start, Failure> {
+) -> Result<Start> {
     let start = match (from, state, axes) {
         (None, None, None) => Start::default(),
         (None, None, Some(axes)) => Start::parse(&format!("axes = {axes}")).map_err(Failure::usage)?,
@@ -33,7 +33,7 @@ pub fn start(
     })
 }
 
-fn load(path: &Path) -> Result<Start, Failure> {
+fn load(path: &Path) -> Result<Start> {
     let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
     Start::parse(&text).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))

@@ -14,7 +14,7 @@ impl Command for Status {
     type Report = StatusReport;
     const ID: &'static str = "toyo.status";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<StatusReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<StatusReport> {
         Ok(StatusReport::of(context.link.status().await?))
     }
 }

@@ -58,7 +58,7 @@ impl Command for AxesOf {
     type Report = Configuration;
     const ID: &'static str = "yerc.axes";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Configuration, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Configuration> {
         let link = context.link;
         let model = match self.group {
             Groups::One(group) => link.model_for(|model| ReadAxes::new(model, group, Coordinates::Pulse)).await?,
@@ -168,7 +168,7 @@ macro_rules! by_axis {
             type Report = $report;
             const ID: &'static str = $id;
 
-            async fn run(&self, context: Context<'_, Yerc>) -> Result<$report, Failure> {
+            async fn run(&self, context: Context<'_, Yerc>) -> Result<$report> {
                 let link = context.link;
                 let question = link.by_model(|model| $query::new(model, self.group)).await?;
                 let Some(axes) = link.ask(&question).await.known()? else {

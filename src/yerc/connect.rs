@@ -15,7 +15,7 @@ use armctl_frame::settings::target::Place;
 use armctl_transport::fault::FaultSpec;
 use armctl_transport::session::host::shared_link::SharedLink;
 
-fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
+fn endpoint(robot: &Robot) -> Result<Endpoint> {
     match &robot.target.value.place {
         Place::Udp(udp) => Ok(Endpoint::Udp { host: udp.host.clone(), ports: [udp.port, udp.file_port] }),
         Place::Sim(sim) => {
@@ -43,7 +43,7 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
 }
 
 /// Connects to the controller of a target.
-pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Client, Failure> {
+pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Client> {
     let options = Options {
         model: robot.model.value.named(),
         grant: access.grant.clone(),
@@ -67,7 +67,7 @@ pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Cli
 
 /// Opens a connection for a session. UDP sends even if there is no receiver, so a first request checks that a
 /// controller answers.
-pub async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
+pub async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink> {
     let robot = &Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Yerc::connect(robot, access.clone(), screen).await?;
     overview(&mut link).await?;

@@ -46,7 +46,7 @@ impl Declaration for Yerc {
     const GUARD: Guard =
         Guard { is_harmless_data: read_only_filter::only_reads_or_stops, is_harmless_image: |_, _| false };
     const DISSECTOR: fn() -> String = super::wireshark::dissector;
-    const TWIN: fn(&Path) -> Result<Self::Start, Failure> = super::file::twin::start;
+    const TWIN: fn(&Path) -> Result<Self::Start> = super::file::twin::start;
     const ALARMS: fn(&mut Link) -> Work<'_, Vec<Alarm>> =
         |link| async { alarm::present(link, &mut true, alarm::SLOTS).await }.boxed_local();
     const TRAFFIC: fn(&Link) -> Traffic = Link::traffic;
@@ -73,11 +73,11 @@ impl Declaration for Yerc {
 impl Backups for Yerc {
     const IDS: [&'static str; 3] = ["yerc.backup", "yerc.restore", "yerc.diff"];
 
-    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport> {
         back_up(context, making).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport> {
         Restore::of(restoring).run(context).await
     }
 }

@@ -49,7 +49,7 @@ impl Command for Hours {
     type Report = Times;
     const ID: &'static str = "yerc.hours";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Times, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Times> {
         let link = context.link;
         let make = |model| {
             self.counters(model).into_iter().map(|it| ReadManagementTime::new(model, it)).collect::<Result<Vec<_>, _>>()
@@ -108,7 +108,7 @@ struct Elapsed {
 }
 
 impl Time {
-    fn new(counter: TimeCounter, time: Result<ManagementTime, Failure>, encoding: Encoding) -> Self {
+    fn new(counter: TimeCounter, time: Result<ManagementTime>, encoding: Encoding) -> Self {
         let (name, group, application) = match counter {
             TimeCounter::ControlPower => ("control_power", None, None),
             TimeCounter::Servo(group) => ("servo", group, None),

@@ -46,7 +46,7 @@ impl Command for Info {
     type Report = Versions;
     const ID: &'static str = "yerc.info";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Versions, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Versions> {
         let link = context.link;
         let make = |model| {
             self.parts(model).into_iter().map(|part| ReadSystemInfo::new(model, part)).collect::<Result<Vec<_>, _>>()
@@ -95,7 +95,7 @@ struct Named {
 }
 
 impl Part {
-    fn new(part: SystemPart, info: Result<SystemInfo, Failure>, encoding: Encoding) -> Self {
+    fn new(part: SystemPart, info: Result<SystemInfo>, encoding: Encoding) -> Self {
         let (group, application) = match part {
             SystemPart::Group(group) => (Some(group.to_string()), None),
             SystemPart::Application(number) => (None, Some(number)),

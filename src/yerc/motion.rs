@@ -95,7 +95,7 @@ async fn present_alarm(link: &mut Link) -> (String, Option<String>) {
 }
 
 /// In a dry run, records the request that follows an alarm.
-pub(super) fn plan_alarm(link: &mut Link) -> Result<(), Failure> {
+pub(super) fn plan_alarm(link: &mut Link) -> Result<()> {
     let question = ReadAlarm::new(1, false).map_err(usage)?;
     let reason = Reason::about("alarm number, after an alarm").depending_on("whether the status shows an alarm");
     link.plan_if(&question.request(), reason);

@@ -10,7 +10,7 @@ use armctl_frame::face::overview::{LeftOver, OverviewReport};
 use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
 
 /// Reads status and position.
-pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
+pub async fn overview(link: &mut Link) -> Result<OverviewReport> {
     let status = link.ask(&ReadStatus).await.known()?;
     let fault = match status {
         Some(status) => status::fault(link, status).await?,

@@ -113,7 +113,7 @@ impl Command for Raw {
         if is_known { Confirmation::WhenKnown } else { Confirmation::Question }
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Answer, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Answer> {
         let Context { link, screen, confirmer, .. } = context;
         let request = self.request();
         if !self.file && request.division() == Division::File {
@@ -154,7 +154,7 @@ const MAX_TRANSFER: u64 = 4 << 20;
 const BACKUP: Duration = Duration::from_secs(15 * 60);
 
 /// Executes a transfer, and returns all its blocks as the data of one answer.
-async fn transfer(link: &mut Link, request: &Request) -> Result<Reply, Failure> {
+async fn transfer(link: &mut Link, request: &Request) -> Result<Reply> {
     let began = Instant::now();
     let mut data = Vec::new();
     // The backup must not be requested twice, so the request is not repeated.

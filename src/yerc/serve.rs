@@ -77,7 +77,7 @@ impl serve::Serve for Serve {
     type Report = Serving;
     type Server = Yerc;
 
-    async fn start(self) -> Result<Started<Self>, Failure> {
+    async fn start(self) -> Result<Started<Self>> {
         let model = self.model.unwrap_or(Model::Dx200);
         let start = simulator_start::start(self.state.as_deref(), self.from.as_deref(), model, self.fault.as_ref())?;
         simulator_start::check_model(&start, self.model)?;

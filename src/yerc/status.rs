@@ -17,7 +17,7 @@ impl Command for Status {
     type Report = StatusReport;
     const ID: &'static str = "yerc.status";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<StatusReport, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<StatusReport> {
         let link = context.link;
         let Some(status) = link.ask(&ReadStatus).await.known()? else {
             plan_latest(link)?;
@@ -28,7 +28,7 @@ impl Command for Status {
 }
 
 /// Present fault: the latest alarm, which is read if there is an alarm. An error has no number in this report.
-pub(super) async fn fault(link: &mut Link, status: ControllerStatus) -> Result<Fault, Failure> {
+pub(super) async fn fault(link: &mut Link, status: ControllerStatus) -> Result<Fault> {
     let alarms = if status.alarm() { present(link, &mut true, 1).await? } else { Vec::new() };
     Ok(Fault::new(status.faulted(), alarms.first()))
 }

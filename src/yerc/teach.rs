@@ -74,7 +74,7 @@ impl Command for Teach {
         format!("overwrite {}", self.variable)
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Self::Report, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Self::Report> {
         let Context { link, confirmer, robot, screen, .. } = context;
         let label = variable_name(names::of_robot(robot, screen), self.variable);
         let (name, group) = (self.variable.to_string(), self.group()?);
@@ -111,7 +111,7 @@ impl Command for Teach {
 
 impl Teach {
     /// Control group of the position. It must match the kind of the variable.
-    fn group(&self) -> Result<Group, Failure> {
+    fn group(&self) -> Result<Group> {
         let (first, what) = match self.variable.kind {
             VariableKind::Bp => (Group::Base(1), "bases, such as B1"),
             VariableKind::Ex => (Group::Station(1), "stations, such as S1"),
@@ -131,7 +131,7 @@ impl Teach {
     }
 
     /// Content of the variable; `None` if the variable is undefined.
-    async fn read(&self, link: &mut Link) -> Result<Option<Value>, Failure> {
+    async fn read(&self, link: &mut Link) -> Result<Option<Value>> {
         match link.ask_optional(&ReadVariable::new(self.variable.kind, self.variable.number)).await? {
             Ok(value) => Ok(Some(value)),
             Err(refusal) if is_undefined(&ReadError::Refused(refusal)) => Ok(None),
@@ -141,7 +141,7 @@ impl Teach {
 
     /// Coordinates to store: the requested coordinates. Without a request, the type that the variable has, or pulses if
     /// the variable is undefined.
-    fn coordinates(&self, old: Option<&Value>) -> Result<Coordinates, Failure> {
+    fn coordinates(&self, old: Option<&Value>) -> Result<Coordinates> {
         match (self.coordinates, old.map(as_position).map(|old| old.kind)) {
             (Some(stored), _) => Ok(stored.into()),
             (None, None | Some(PositionKind::Pulse)) => Ok(Coordinates::Pulse),
@@ -178,7 +178,7 @@ impl Teach {
     }
 
     /// In a dry run, records what follows the first read.
-    async fn plan(&self, link: &mut Link, group: Group) -> Result<Failure, Failure> {
+    async fn plan(&self, link: &mut Link, group: Group) -> Result<Failure> {
         let model = link.model_for(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
         let asked = |coordinates| ReadPosition::new(model, group, coordinates).map_err(usage);
         let coordinates = self.coordinates.map_or(Coordinates::Pulse, Coordinates::from);

@@ -14,7 +14,7 @@ const SIGNALS: [&str; 8] = ["CPU", "emergency stop", "alarm", "remote command", 
 
 /// Checks the layers. It only reads. If a session is open, the check reads the image through the session and opens no
 /// second connection for images.
-pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
+pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>> {
     let fieldbus = endpoint(robot)?.fieldbus();
     let [first, .., last] = fieldbus.layers else {
         return Err(Failure::local("internal error: a fieldbus without layers"));
@@ -49,7 +49,7 @@ pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec
 }
 
 /// Reads the image of the controller through the session that keeps the connection open.
-async fn through_session(robot: &Robot, access: Access, screen: &Screen) -> Result<Image, Failure> {
+async fn through_session(robot: &Robot, access: Access, screen: &Screen) -> Result<Image> {
     let robot = Robot { sessions: Sessions::Only, ..robot.clone() };
     let access = Access { mode: ConnectMode::Monitor, trace: None, ..access };
     let mut link = Yrcx::connect(&robot, access, screen).await?;

@@ -20,7 +20,7 @@ pub enum Endpoint<'a> {
 }
 
 /// Endpoint of a robot's target.
-pub fn endpoint(robot: &Robot) -> Result<Endpoint<'_>, Failure> {
+pub fn endpoint(robot: &Robot) -> Result<Endpoint<'_>> {
     match &robot.target.value.place {
         Place::Bus(bus) => match buses::by_name(bus.scheme.bus) {
             Some(fieldbus) => Ok(Endpoint::Bus(bus, fieldbus)),
@@ -43,12 +43,7 @@ pub type OpenBoard = WithSimulator<Box<dyn Board>>;
 
 impl Endpoint<'_> {
     /// Opens a link, with a packet recorder if requested.
-    pub async fn open(
-        &self,
-        robot: &Robot,
-        access: &Access,
-        screen: &Screen,
-    ) -> Result<(ImageLink, Option<Recorder>), Failure> {
+    pub async fn open(&self, robot: &Robot, access: &Access, screen: &Screen) -> Result<(ImageLink, Option<Recorder>)> {
         let purpose = match self {
             // Faults of the network can only be simulated on a simulated network.
             Self::Sim(sim) if sim.bus.is_none() && !simulated::has_faults(sim) => {
@@ -71,7 +66,7 @@ impl Endpoint<'_> {
         robot: &Robot,
         access: &Access,
         screen: &Screen,
-    ) -> Result<(OpenBoard, Option<Recorder>), Failure> {
+    ) -> Result<(OpenBoard, Option<Recorder>)> {
         self.on_fieldbus(robot, access, screen, |fieldbus, at| (fieldbus.board)(at)).await
     }
 
@@ -83,7 +78,7 @@ impl Endpoint<'_> {
         access: &Access,
         screen: &Screen,
         open: impl for<'a> FnOnce(&'static Fieldbus, ConnectionParameters<'a>) -> fieldbus::Opening<'a, T>,
-    ) -> Result<(WithSimulator<T>, Option<Recorder>), Failure> {
+    ) -> Result<(WithSimulator<T>, Option<Recorder>)> {
         match *self {
             Self::Bus(bus, fieldbus) => {
                 let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type)?.unzip();
@@ -135,7 +130,7 @@ fn simulated_on(sim: &target::Sim) -> &'static Fieldbus {
 }
 
 /// Starts a simulated controller on its fieldbus.
-fn simulate(sim: &target::Sim) -> Result<(&'static Fieldbus, Simulation), Failure> {
+fn simulate(sim: &target::Sim) -> Result<(&'static Fieldbus, Simulation)> {
     let fieldbus = simulated_on(sim);
     Ok((fieldbus, (fieldbus.simulate)(sim)?))
 }

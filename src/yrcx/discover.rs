@@ -51,7 +51,7 @@ pub async fn discover(
     wait: Duration,
     access: &Access,
     screen: &Screen,
-) -> Result<Vec<FoundDevice>, Failure> {
+) -> Result<Vec<FoundDevice>> {
     let narrowest = scope(searches);
     let mut all = Vec::new();
     for (fieldbus, search) in searches.each() {

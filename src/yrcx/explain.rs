@@ -36,7 +36,7 @@ impl face::Explain for Explain {
     type Report = Codes<Group>;
     const ID: &'static str = "explain.yrcx";
 
-    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes<Group>, Failure> {
+    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes<Group>> {
         let known = match &self.code {
             Code::Alarm(alarm) => {
                 let site = alarms.find(origin, &alarm.to_string())?;

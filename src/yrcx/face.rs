@@ -52,7 +52,7 @@ impl Declaration for Yrcx {
     const SESSION_RECORDS: bool = true;
     const SESSION_COMMANDS: bool = true;
     const DISSECTOR: fn() -> String = super::wireshark::dissector;
-    const TWIN: fn(&Path) -> Result<Self::Start, Failure> = super::backup::twin::start;
+    const TWIN: fn(&Path) -> Result<Self::Start> = super::backup::twin::start;
     const ALARMS: fn(&mut Link) -> Work<'_, Vec<Alarm>> = |link| overview::alarms(link).boxed_local();
     const TRAFFIC: fn(&Link) -> Traffic = Link::traffic;
     const OVERVIEW: fn(&mut Link) -> Work<'_, OverviewReport> = |link| overview::overview(link).boxed_local();
@@ -85,11 +85,11 @@ impl Declaration for Yrcx {
 impl Backups for Yrcx {
     const IDS: [&'static str; 3] = ["yrcx.backup", "yrcx.restore", "yrcx.diff"];
 
-    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport> {
         back_up(context, making).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport> {
         restore(context, restoring).await
     }
 }

@@ -425,7 +425,7 @@ impl Bench {
     }
 
     /// Runs a command line as `armctl_frame` does: with `--yes`, or without a terminal for the question.
-    fn run(&mut self, line: &str, yes: bool) -> Result<Value, Failure> {
+    fn run(&mut self, line: &str, yes: bool) -> Result<Value> {
         let (_, command) = real(line);
         let intent = command.intent(Some(&self.robot));
         let gate = Gate { yes, ..Gate::default() };

@@ -197,7 +197,7 @@ macro_rules! starts {
                     format!($intent, self.which.describe())
                 }
 
-                fn report(&self, _done: &link::CommandResult) -> Result<SetReport, Failure> {
+                fn report(&self, _done: &link::CommandResult) -> Result<SetReport> {
                     let new = NewValue::of("program_state", $new, format!($done, self.which.describe()));
                     Ok(self.which.named(new).replaces(Old::UNREAD))
                 }

@@ -58,7 +58,7 @@ impl Command for Raw {
         confirmed_write::confirmation(self.wi.command())
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Exchange, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Exchange> {
         context.link.reject_unit("the words contain the robot number")?;
         if self.confirmation() == Confirmation::WhenKnown {
             confirmed_write::confirm(context.link, &context.confirmer, &self.wi).await?;

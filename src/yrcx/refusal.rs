@@ -10,11 +10,11 @@ use armctl_controller::yrcx::value::Value;
 /// Builds the order of a command line.
 pub trait BuildOrder {
     /// Returns the order. A field that the manual does not allow is an error of the command line.
-    fn valid_order(self) -> Result<Order, Failure>;
+    fn valid_order(self) -> Result<Order>;
 }
 
 impl BuildOrder for Draft {
-    fn valid_order(self) -> Result<Order, Failure> {
+    fn valid_order(self) -> Result<Order> {
         self.build().map_err(|error| invalid_words(&error))
     }
 }

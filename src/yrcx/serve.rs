@@ -51,7 +51,7 @@ pub struct ServeArgs {
 
 impl ServeArgs {
     /// Rejects options of another fieldbus.
-    fn fits(&self, chosen: &Fieldbus) -> Result<(), Failure> {
+    fn fits(&self, chosen: &Fieldbus) -> Result<()> {
         for (fieldbus, arguments) in Servers::arguments() {
             let strange = arguments.iter().find(|argument| self.servers.has(argument.get_id()));
             if let Some(strange) = strange.filter(|_| fieldbus.name != chosen.name) {
@@ -77,7 +77,7 @@ impl serve::Serve for ServeArgs {
     type Report = Serving;
     type Server = RunningSimulation;
 
-    async fn start(self) -> Result<Started<Self>, Failure> {
+    async fn start(self) -> Result<Started<Self>> {
         let wanted = self.bus.as_deref();
         let bus = simulators().find(|(name, _)| wanted.is_none_or(|wanted| wanted == *name)).map(|(_, bus)| bus);
         let all = self.servers.arguments.each();

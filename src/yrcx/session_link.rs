@@ -11,7 +11,7 @@ use armctl_frame::face::HeldLink;
 use armctl_transport::session::host::shared_link::SharedLink;
 
 /// Opens the connection that the session keeps open.
-pub async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
+pub async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink> {
     let endpoint = endpoint(robot)?;
     let (link, recorder) = endpoint.open(robot, access, screen).await?;
     let held = yrcx::open_session_link(link, endpoint.is_owner(), Instant::now() + robot.timeout.value).await;

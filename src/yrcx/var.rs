@@ -201,7 +201,7 @@ macro_rules! changes {
                     self.operand.put(draft.with(Key::Variable, self.variable))
                 }
 
-                fn report(&self, done: &link::CommandResult) -> Result<Changed, Failure> {
+                fn report(&self, done: &link::CommandResult) -> Result<Changed> {
                     let (variable, operand) = (name(self.variable), self.operand.describe());
                     let words = format!($told, variable = variable, operand = operand);
                     Ok(self.operand.report(variable, $does, words, done))

@@ -43,10 +43,7 @@ type LineEditor = rustyline::Editor<Assistant, FileHistory>;
 impl Editor {
     /// Takes control of the terminal. Returns the editor with a function that prints messages above the line that the
     /// user types.
-    pub fn start(
-        screen: &Screen,
-        assistant: Assistant,
-    ) -> Result<(Self, impl Fn(&str) + Send + Sync + 'static), Failure> {
+    pub fn start(screen: &Screen, assistant: Assistant) -> Result<(Self, impl Fn(&str) + Send + Sync + 'static)> {
         let (prompts, asked) = blocking::channel();
         let (answer, typed) = mpsc::unbounded_channel();
         let mut editor = editor(screen, assistant).map_err(|error| unusable(&error))?;

@@ -26,7 +26,7 @@ pub enum Shell {
 
 impl Completions {
     /// Prints the script.
-    pub fn run(self, run: &Run) -> Result<(), Failure> {
+    pub fn run(self, run: &Run) -> Result<()> {
         run.screen.data(self.shell.script())
     }
 }

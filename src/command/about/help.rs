@@ -48,7 +48,7 @@ const OPTIONS: &str = "options";
 
 impl Help {
     /// Prints the help; `root` creates the whole command line.
-    pub fn run(self, run: &Run, root: fn() -> Command) -> Result<(), Failure> {
+    pub fn run(self, run: &Run, root: fn() -> Command) -> Result<()> {
         run.screen.read(&text(&self.words, run.screen.stdout_color(), root)?)
     }
 }
@@ -82,7 +82,7 @@ fn setups() -> Vec<(String, &'static str, &'static str)> {
 }
 
 /// Help for these words; without words, the help of armctl and the list of topics.
-pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<String, Failure> {
+pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<String> {
     if let [word] = words {
         if word == EXIT_CODES {
             return Ok(exit_codes());

@@ -30,7 +30,7 @@ pub struct SchemaOf {
 
 impl SchemaOf {
     /// Prints the schema.
-    pub fn run(self, run: &Run) -> Result<(), Failure> {
+    pub fn run(self, run: &Run) -> Result<()> {
         let all = all();
         let Some(id) = self.id else {
             let names: String = all.iter().map(|entry| format!("{}\n", entry.id)).collect();

@@ -134,7 +134,7 @@ pub struct Snapshot {
 
 impl RehearsedRobot {
     /// Compares two snapshots of a robot.
-    pub fn compare(robot: &str, family: Family, [old, new]: [&Snapshot; 2]) -> Result<Self, Failure> {
+    pub fn compare(robot: &str, family: Family, [old, new]: [&Snapshot; 2]) -> Result<Self> {
         let side = |folder: &Path| {
             Ok::<_, Failure>(BackupSide {
                 manifest: manifest::open_existing(folder)?,

@@ -47,7 +47,7 @@ impl Command for Pack {
     const USES_FILES: bool = true;
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
-    async fn run(&self, context: Context<'_, Checked>) -> Result<Packed, Failure> {
+    async fn run(&self, context: Context<'_, Checked>) -> Result<Packed> {
         let Context { robot, screen, .. } = context;
         if context.link.dry_run {
             return Err(Failure::usage("a report has no dry run: its requests depend on the answers")
@@ -133,7 +133,7 @@ fn file_part(name: &str) -> String {
 }
 
 /// Writes a compressed tar archive.
-fn write(target: &Target, parts: &[(&'static str, Vec<u8>)]) -> Result<(), Failure> {
+fn write(target: &Target, parts: &[(&'static str, Vec<u8>)]) -> Result<()> {
     let mut tar = GzEncoder::new(Vec::new(), Compression::default());
     let packed = parts.iter().try_for_each(|(name, content)| {
         tar.write_all(&tar_header(name, content.len()))?;

@@ -136,7 +136,7 @@ struct Listed {
 
 impl List {
     /// Selected robots; all without a selection.
-    fn of(run: &Run) -> Result<Self, Failure> {
+    fn of(run: &Run) -> Result<Self> {
         let (inventory, selection) = (&run.sources.inventory, &run.sources.selection);
         if selection.sim || selection.target.is_some() {
             return Err(Failure::usage("--sim and -t cannot select robots in the inventory")

@@ -30,7 +30,7 @@ pub struct Service {
 
 impl Service {
     /// Finds the service manager of the environment, and raises the limit of open files.
-    pub fn begin(screen: Screen) -> Result<Self, Failure> {
+    pub fn begin(screen: Screen) -> Result<Self> {
         make_room();
         let supervisor = Supervisor::find().map_err(|error| unreachable(&error))?;
         Ok(Self { log: Log::new(screen), supervisor, state: RefCell::default() })
@@ -52,7 +52,7 @@ impl Service {
     }
 
     /// Reports to the service manager that polling has started.
-    pub fn notify_ready(&self, robots: usize) -> Result<(), Failure> {
+    pub fn notify_ready(&self, robots: usize) -> Result<()> {
         let plural = if robots == 1 { "" } else { "s" };
         self.supervisor.ready(&format!("{robots} robot{plural}")).map_err(|error| unreachable(&error))
     }

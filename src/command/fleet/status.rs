@@ -36,7 +36,7 @@ pub struct Absent {
 
 impl Link {
     /// Tries again to connect to a robot that did not answer the last command.
-    pub async fn open_link(&mut self, screen: &Screen) -> Result<(), Failure> {
+    pub async fn open_link(&mut self, screen: &Screen) -> Result<()> {
         let Self::Absent(absent) = self else { return Ok(()) };
         if !std::mem::replace(&mut absent.is_asked, true) {
             return Ok(());
@@ -65,7 +65,7 @@ impl Family for Fleet {
     type Link = Link;
     const STOP: &'static [&'static str] = &[];
 
-    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link> {
         let face = families::of(robot.family);
         match (face.driver.connect)(robot, access.clone(), screen).await {
             Ok(connection) => Ok(Link::Open(face, connection)),
@@ -77,7 +77,7 @@ impl Family for Fleet {
         }
     }
 
-    async fn halt(link: &mut Link) -> Result<String, Failure> {
+    async fn halt(link: &mut Link) -> Result<String> {
         match link {
             Link::Open(_, connection) => connection.halt().await,
             Link::Absent(_) => Ok("nothing was sent".to_owned()),
@@ -99,11 +99,11 @@ impl Family for Fleet {
         (families::driver(robot).takes_one_client)(robot)
     }
 
-    fn addresses(robot: &Robot) -> Result<Vec<target::Address>, Failure> {
+    fn addresses(robot: &Robot) -> Result<Vec<target::Address>> {
         (families::driver(robot).addresses)(robot)
     }
 
-    async fn close(link: Link, screen: &Screen) -> Result<(), Failure> {
+    async fn close(link: Link, screen: &Screen) -> Result<()> {
         match link {
             Link::Open(_, connection) => connection.close(screen).await,
             Link::Absent(_) => Ok(()),
@@ -125,7 +125,7 @@ impl Command for Overview {
     const ID: &'static str = "status";
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
-    async fn run(&self, context: Context<'_, Fleet>) -> Result<OverviewReport, Failure> {
+    async fn run(&self, context: Context<'_, Fleet>) -> Result<OverviewReport> {
         let found = match context.link.open_link(context.screen).await {
             Ok(()) => match context.link {
                 Link::Open(face, connection) => (face.overview)(&mut **connection).await,
@@ -140,7 +140,7 @@ impl Command for Overview {
     }
 
     /// A missing answer is a state of the robot here, and not a failure.
-    fn without_answer(&self, robot: &Robot, failure: Failure) -> Result<OverviewReport, Failure> {
+    fn without_answer(&self, robot: &Robot, failure: Failure) -> Result<OverviewReport> {
         if failure.kind != Kind::NoAnswer {
             return Err(failure);
         }
@@ -181,7 +181,7 @@ fn count<'a>(envelopes: &(impl Iterator<Item = &'a Envelope> + Clone)) -> String
 }
 
 /// Overview of a robot, with the connections of an interactive session.
-pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<OverviewReport, Failure> {
+pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<OverviewReport> {
     let overview = Overview::default();
     let access = Access::reading(overview.connect_mode());
     let access = line.connect(robot, access, screen).await?;

@@ -46,7 +46,7 @@ impl Only {
     }
 
     /// Rejects patterns without a match, such as mistyped patterns.
-    pub fn check<S: AsRef<str>>(&self, names: &[S]) -> Result<(), Failure> {
+    pub fn check<S: AsRef<str>>(&self, names: &[S]) -> Result<()> {
         let unknown = self.0.iter().find(|pattern| !names.iter().any(|name| matches_pattern(pattern, name.as_ref())));
         let Some(pattern) = unknown else { return Ok(()) };
         let near = nearest(pattern, names.iter().map(AsRef::as_ref));

@@ -17,7 +17,7 @@ pub trait Explain {
     const ID: &'static str;
 
     /// Meaning of the code without reading a robot; `alarms` has the site's texts.
-    fn explain(&self, alarms: &alarms::Alarms, origin: Origin<'_>) -> Result<Self::Report, Failure>;
+    fn explain(&self, alarms: &alarms::Alarms, origin: Origin<'_>) -> Result<Self::Report>;
 
     /// The alarm in the notation of controllers; `None` if the code is not an alarm.
     fn alarm(&self) -> Option<String>;

@@ -66,7 +66,7 @@ pub struct Face {
     /// Serves a simulator with these arguments of `armctl sim FAMILY`.
     pub serve: fn(name: String, arguments: Vec<OsString>) -> Work<'static, NamedServer>,
     /// Start state of the family's simulator with the data of a backup.
-    pub twin: fn(folder: &Path) -> Result<Box<dyn Any>, Failure>,
+    pub twin: fn(folder: &Path) -> Result<Box<dyn Any>>,
 
     /// Dissector of the protocol for Wireshark, in Lua, without the functions that all families use.
     pub dissector: fn() -> String,
@@ -110,7 +110,7 @@ pub struct Face {
 pub type IsNamed<'a> = dyn Fn(&str) -> bool + 'a;
 
 /// Work of a family that can fail.
-pub type Work<'a, T> = LocalBoxFuture<'a, Result<T, Failure>>;
+pub type Work<'a, T> = LocalBoxFuture<'a, Result<T>>;
 
 /// Repeated reads of a robot, for the poller.
 pub trait Watch {
@@ -134,7 +134,7 @@ pub struct HeldLink {
     /// The link.
     pub held: SharedLink,
     /// Action after the link is closed: the end of the trace.
-    pub finish: Option<Box<dyn FnOnce() -> Result<(), Failure>>>,
+    pub finish: Option<Box<dyn FnOnce() -> Result<()>>>,
 }
 
 impl From<SharedLink> for HeldLink {

@@ -75,7 +75,7 @@ pub trait Declaration: Backups {
     /// See [`Face::dissector`].
     const DISSECTOR: fn() -> String;
     /// Start state of the simulator with the data of a backup.
-    const TWIN: fn(&Path) -> Result<Self::Start, Failure>;
+    const TWIN: fn(&Path) -> Result<Self::Start>;
     /// Active alarms, the latest first, as far as they can be read.
     const ALARMS: fn(&mut Self::Link) -> Work<'_, Vec<Alarm>>;
     /// Traffic counted on a link so far.
@@ -115,13 +115,13 @@ pub trait Poller: Sized + 'static {
     type Family: Declaration;
 
     /// Connects.
-    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure>;
+    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self>;
     /// Reads once.
-    async fn look(&mut self, detail: Detail) -> Result<Sample, Failure>;
+    async fn look(&mut self, detail: Detail) -> Result<Sample>;
     /// Connection, for a read-only command.
     fn link(&mut self) -> &mut <Self::Family as connection::Family>::Link;
     /// Closes the connection.
-    async fn close(self, screen: &Screen) -> Result<(), Failure>;
+    async fn close(self, screen: &Screen) -> Result<()>;
 }
 
 impl Face {
@@ -182,7 +182,7 @@ fn explains<F: Declaration>(code: &str) -> bool {
     parsed.is_ok_and(|explain| explain.explain(&Alarms::default(), Origin::any(F::NAME)).is_ok())
 }
 
-async fn serve<S: Serve + Args + 'static>(name: String, arguments: Vec<OsString>) -> Result<NamedServer, Failure> {
+async fn serve<S: Serve + Args + 'static>(name: String, arguments: Vec<OsString>) -> Result<NamedServer> {
     let command = S::augment_args(clap::Command::new("sim").no_binary_name(true));
     let parsed = command.try_get_matches_from(arguments).and_then(|found| S::from_arg_matches(&found));
     let serve = parsed.map_err(|error| Failure::local(format!("internal error: {error}")))?;

@@ -1,8 +1,12 @@
 //! Envelope that all JSON answers have.
 
 use jiff::Timestamp;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
 
-use crate::prelude::basics::*;
+use crate::failure::Failure;
+use crate::settings::Robot;
 use crate::settings::place::Place;
 
 /// Output of `--json` for a robot:

@@ -77,11 +77,11 @@ impl PathOptions {
     ///
     /// # Errors
     /// A file exists, or cannot be used.
-    pub fn check(&self, several: bool) -> Result<(), Failure> {
+    pub fn check(&self, several: bool) -> Result<()> {
         [&self.svg, &self.html].into_iter().try_for_each(|file| self.target(file.as_deref(), several).map(drop))
     }
 
-    fn target(&self, file: Option<&Path>, several: bool) -> Result<Option<Target>, Failure> {
+    fn target(&self, file: Option<&Path>, several: bool) -> Result<Option<Target>> {
         text_files::target(file, self.force, several)
     }
 
@@ -89,7 +89,7 @@ impl PathOptions {
     ///
     /// # Errors
     /// There is nothing to draw, or a file cannot be written.
-    pub fn report(&self, drawing: Drawing) -> Result<PathReport, Failure> {
+    pub fn report(&self, drawing: Drawing) -> Result<PathReport> {
         let mut files = Vec::new();
         if let Some(target) = self.target(self.svg.as_deref(), false)? {
             files.push(text_files::write(&target, &svg::document(&drawing))?);

@@ -14,7 +14,7 @@ pub use schemars::JsonSchema;
 pub use serde::Serialize;
 pub use serde_json::{Value, json};
 
-pub use crate::failure::{Failure, Kind};
+pub use crate::failure::{Failure, Kind, Result};
 pub use crate::gate::{Change, Confirmation};
 pub use crate::output::Screen;
 pub use crate::output::csv::RowsOf;

@@ -60,7 +60,7 @@ impl CheckArguments {
     ///
     /// # Errors
     /// The errors of [`CheckSettings::load`].
-    pub fn settings(&self, folder: Option<&Path>) -> Result<CheckSettings, Failure> {
+    pub fn settings(&self, folder: Option<&Path>) -> Result<CheckSettings> {
         let mut settings = CheckSettings::load(folder)?;
         settings.max_speed.extend(&self.max_speed);
         settings.tolerance.extend(&self.tolerance);

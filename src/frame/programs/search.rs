@@ -44,7 +44,7 @@ impl SearchArguments {
     ///
     /// # Errors
     /// The pattern is not valid.
-    pub fn search(&self, programs: &[Program], objects: &[String], unread: Vec<ItemError>) -> Result<Matches, Failure> {
+    pub fn search(&self, programs: &[Program], objects: &[String], unread: Vec<ItemError>) -> Result<Matches> {
         let regex = self.regex()?;
         let mut matches = Vec::new();
         for program in programs {
@@ -66,7 +66,7 @@ impl SearchArguments {
         Ok(Matches { programs: programs.len(), matches, unread })
     }
 
-    fn regex(&self) -> Result<Option<Regex>, Failure> {
+    fn regex(&self) -> Result<Option<Regex>> {
         let Some(pattern) = &self.pattern else { return Ok(None) };
         let source = if self.extended { pattern.clone() } else { from_basic(pattern) };
         let regex = RegexBuilder::new(&source).case_insensitive(self.ignore_case).build();

@@ -62,7 +62,7 @@ impl CheckSettings {
     ///
     /// # Errors
     /// The file cannot be read, or has a mistake.
-    pub fn load(folder: Option<&Path>) -> Result<Self, Failure> {
+    pub fn load(folder: Option<&Path>) -> Result<Self> {
         for path in folder.into_iter().chain([Path::new("")]).map(|folder| folder.join(FILE)) {
             match files::text(&path, MAX_SIZE) {
                 Ok(text) => {
@@ -75,7 +75,7 @@ impl CheckSettings {
         Ok(Self::default())
     }
 
-    fn parse(text: &str, name: &str) -> Result<Self, Failure> {
+    fn parse(text: &str, name: &str) -> Result<Self> {
         let at = |start: usize, what: &str| {
             let (line, column) = line_and_column(text, start);
             Failure::usage(format!("{name}:{line}:{column}: {what}"))

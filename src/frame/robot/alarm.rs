@@ -151,7 +151,7 @@ pub struct AlarmEntry<T> {
 
 impl<T> Row<T> {
     /// Entry at an index of a list; `asked` is its name in errors.
-    pub fn new(index: u16, asked: impl Into<String>, outcome: Result<AlarmEntry<T>, Failure>) -> Self {
+    pub fn new(index: u16, asked: impl Into<String>, outcome: Result<AlarmEntry<T>>) -> Self {
         Self { list: None, index, outcome: ItemOutcome::new(asked, outcome) }
     }
 }

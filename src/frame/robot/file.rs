@@ -32,7 +32,7 @@ pub struct FileItem<M = Transfer> {
 
 impl<M> FileItem<M> {
     /// File without content, with its result.
-    pub fn new(name: impl fmt::Display, more: M, outcome: Result<(), Failure>) -> Self {
+    pub fn new(name: impl fmt::Display, more: M, outcome: Result<()>) -> Self {
         let name = name.to_string();
         let error = outcome.err().map(|failure| ItemError::new(name.as_str(), failure));
         Self { name, bytes: None, sha256: None, path: None, more, ok: error.is_none(), error }
@@ -117,7 +117,7 @@ impl FileItem {
     }
 
     /// Records the content, or the failure. Returns whether the next file can be tried.
-    pub fn finish(&mut self, outcome: Result<Option<Hash>, Failure>) -> bool {
+    pub fn finish(&mut self, outcome: Result<Option<Hash>>) -> bool {
         match outcome {
             Ok(content) => {
                 if let Some(content) = content {
@@ -222,7 +222,7 @@ impl<M> Files<M> {
     }
 
     /// The failure, if there is only one file and it failed.
-    pub fn single_failure(self) -> Result<Self, Failure> {
+    pub fn single_failure(self) -> Result<Self> {
         match &self.files[..] {
             [FileItem { error: Some(error), .. }] => Err(error.failure()),
             _ => Ok(self),

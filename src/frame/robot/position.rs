@@ -198,7 +198,7 @@ pub struct Row {
 
 impl Row {
     /// Position of a group in a frame.
-    pub fn new(group: &str, frame: &str, outcome: Result<Position, Failure>) -> Self {
+    pub fn new(group: &str, frame: &str, outcome: Result<Position>) -> Self {
         match outcome {
             Ok(position) => Self { position: position.of_group(group), ok: true, error: None },
             Err(failure) => Self {

@@ -44,7 +44,7 @@ impl Run {
         &self,
         command: &dyn AnyCommand,
         robots: &[Robot],
-        (links, mut rounds): (&mut [Result<Granted, Failure>], Rounds<'_>),
+        (links, mut rounds): (&mut [Result<Granted>], Rounds<'_>),
     ) -> Result<(), RunError> {
         let end = rounds.deadline();
         let mut last: Option<Vec<Outcome>> = None;

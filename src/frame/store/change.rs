@@ -51,7 +51,7 @@ pub struct ComparedRow<S: Store> {
     /// New content.
     pub new: S::Wire,
     /// Whether the row was written, or why it was not written.
-    pub outcome: Result<bool, Failure>,
+    pub outcome: Result<bool>,
     /// Whether the row was not tried, because an earlier failure ended the write.
     pub is_skipped: bool,
 }
@@ -69,7 +69,7 @@ impl<S: Store> ComparedRow<S> {
 }
 
 /// Writes the rows that differ. Stops at the first failure of the link. Each row has its own result.
-pub async fn write<S: Writable>(work: TableWrite<'_, S>, rows: Vec<Row<S>>) -> Result<WrittenOf<S>, Failure> {
+pub async fn write<S: Writable>(work: TableWrite<'_, S>, rows: Vec<Row<S>>) -> Result<WrittenOf<S>> {
     let TableWrite { mut table, robot, link, screen, confirmer } = work;
     table.select(link).await.map_err(nothing_written)?;
     let compared = write_rows(&table, link, screen, confirmer, rows).await;
@@ -109,7 +109,7 @@ pub async fn write_rows<S: Writable>(
     screen: &Screen,
     confirmer: Confirmer<'_>,
     rows: Vec<Row<S>>,
-) -> Result<Vec<ComparedRow<S>>, Failure> {
+) -> Result<Vec<ComparedRow<S>>> {
     let Some(mut compared) = compare(table, link, screen, &rows).await? else {
         table.plan(link, &rows).await?;
         return Err(unknown());
@@ -129,7 +129,7 @@ pub async fn compare<S: Writable>(
     link: &mut LinkOf<S>,
     screen: &Screen,
     rows: &[Row<S>],
-) -> Result<Option<Vec<ComparedRow<S>>>, Failure> {
+) -> Result<Option<Vec<ComparedRow<S>>>> {
     let read = match table.read_old(link, screen, rows).await {
         // The controller refused all rows at once. This refusal is the answer for each row below.
         Err(failure) if failure.kind == Kind::Refused => {

@@ -147,14 +147,14 @@ pub type LinkOf<S> = <<S as Store>::Family as Family>::Link;
 #[derive(Debug)]
 pub struct Answers<W> {
     /// One result for each row, in the requested order.
-    pub rows: Vec<Result<Option<W>, Failure>>,
+    pub rows: Vec<Result<Option<W>>>,
     /// Number of rows that were requested. The other rows were not requested, because they would fail in the same way.
     pub asked: usize,
 }
 
 impl<W> Answers<W> {
     /// Creates the results of rows that were all requested. A row that was read is defined.
-    pub fn of(rows: Vec<Result<W, Failure>>) -> Self {
+    pub fn of(rows: Vec<Result<W>>) -> Self {
         Self { asked: rows.len(), rows: rows.into_iter().map(|row| row.map(Some)).collect() }
     }
 }
@@ -243,10 +243,10 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
 
     /// Reads the information that is needed before a row is read or written, such as the axis letters. It changes
     /// nothing.
-    async fn open(link: &mut LinkOf<Self>, options: &Self::Options) -> Result<Self, Failure>;
+    async fn open(link: &mut LinkOf<Self>, options: &Self::Options) -> Result<Self>;
 
     /// Reads the information that is needed before these rows are read, or parsed from a file.
-    async fn prepare(&mut self, _link: &mut LinkOf<Self>, _keys: &[Self::Key]) -> Result<(), Failure> {
+    async fn prepare(&mut self, _link: &mut LinkOf<Self>, _keys: &[Self::Key]) -> Result<()> {
         Ok(())
     }
 
@@ -256,12 +256,12 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     }
 
     /// Selects this table, if the controller has several tables.
-    async fn select(&mut self, _link: &mut LinkOf<Self>) -> Result<(), Failure> {
+    async fn select(&mut self, _link: &mut LinkOf<Self>) -> Result<()> {
         Ok(())
     }
 
     /// Restores the table that was selected before [`select`](Self::select), also after a failure.
-    async fn deselect<T>(&self, _link: &mut LinkOf<Self>, outcome: Result<T, Failure>) -> Result<T, Failure> {
+    async fn deselect<T>(&self, _link: &mut LinkOf<Self>, outcome: Result<T>) -> Result<T> {
         outcome
     }
 
@@ -343,12 +343,7 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     ///
     /// # Errors
     /// If a failure occurs before any row was read.
-    async fn read(
-        &self,
-        link: &mut LinkOf<Self>,
-        screen: &Screen,
-        keys: &[Self::Key],
-    ) -> Result<Answers<Self::Wire>, Failure>;
+    async fn read(&self, link: &mut LinkOf<Self>, screen: &Screen, keys: &[Self::Key]) -> Result<Answers<Self::Wire>>;
 }
 
 /// A row to write: its key, its old content if known, and its new content.
@@ -378,7 +373,7 @@ pub trait Writable: Store {
     ///
     /// # Errors
     /// If the content is not valid.
-    fn typed(&self, key: Self::Key, words: &[String]) -> Result<Self::Draft, Failure> {
+    fn typed(&self, key: Self::Key, words: &[String]) -> Result<Self::Draft> {
         set::typed(self, key, words)
     }
 
@@ -386,12 +381,7 @@ pub trait Writable: Store {
     ///
     /// # Errors
     /// If an old value is needed, but is unknown or cannot be written.
-    fn complete_draft(
-        &self,
-        key: Self::Key,
-        draft: &Self::Draft,
-        old: Option<&Self::Wire>,
-    ) -> Result<Self::Wire, Failure>;
+    fn complete_draft(&self, key: Self::Key, draft: &Self::Draft, old: Option<&Self::Wire>) -> Result<Self::Wire>;
 
     /// Reads rows before a write. An implementation can override this function, so that a dry run shows its own purpose
     /// for these requests.
@@ -403,7 +393,7 @@ pub trait Writable: Store {
         link: &mut LinkOf<Self>,
         screen: &Screen,
         rows: &[Row<Self>],
-    ) -> Result<Answers<Self::Wire>, Failure> {
+    ) -> Result<Answers<Self::Wire>> {
         let keys: Vec<Self::Key> = rows.iter().map(|(key, _)| *key).collect();
         self.read(link, screen, &keys).await
     }
@@ -414,15 +404,10 @@ pub trait Writable: Store {
     }
 
     /// In a dry run, records the requests that write rows and read them back.
-    async fn plan(&self, link: &mut LinkOf<Self>, rows: &[Row<Self>]) -> Result<(), Failure>;
+    async fn plan(&self, link: &mut LinkOf<Self>, rows: &[Row<Self>]) -> Result<()>;
 
     /// Writes the rows of a [block](Self::blocks).
-    async fn write(
-        &self,
-        link: &mut LinkOf<Self>,
-        screen: &Screen,
-        rows: &[RowDifference<'_, Self>],
-    ) -> Result<(), Failure>;
+    async fn write(&self, link: &mut LinkOf<Self>, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<()>;
 }
 
 /// Report of commands that read rows.
@@ -431,12 +416,7 @@ type ItemsOf<S> = Items<<S as Store>::Value, <S as Store>::More>;
 pub type WrittenOf<S> = WrittenItems<<S as Store>::Value, <S as Store>::More>;
 
 /// Report item for a row.
-fn item<S: Store>(
-    table: &S,
-    names: &Names,
-    key: S::Key,
-    outcome: Result<Option<S::Wire>, Failure>,
-) -> Item<S::Value, S::More> {
+fn item<S: Store>(table: &S, names: &Names, key: S::Key, outcome: Result<Option<S::Wire>>) -> Item<S::Value, S::More> {
     let name = S::name(key);
     let label = S::LABELS.and_then(|kind| labels::label(names, kind, &S::address(key)));
     let wire = outcome.as_ref().ok().and_then(Option::as_ref);
@@ -492,7 +472,7 @@ async fn read<S: Store>(
     link: &mut LinkOf<S>,
     screen: &Screen,
     keys: &[S::Key],
-) -> Result<Answers<S::Wire>, Failure> {
+) -> Result<Answers<S::Wire>> {
     table.select(link).await?;
     let read = table.read(link, screen, keys).await;
     table.deselect(link, read).await

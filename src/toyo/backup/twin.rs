@@ -15,7 +15,7 @@ pub const UNKNOWN: &str = "a backup contains no positions of the axes, counters,
                            of a new simulator";
 
 /// Start state with the data of a backup.
-pub fn start(folder: &Path) -> Result<Start, Failure> {
+pub fn start(folder: &Path) -> Result<Start> {
     let manifest: Manifest = manifest::open_existing(folder)?;
     let screen = silent();
     let controller = &manifest.controller;

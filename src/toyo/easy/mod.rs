@@ -52,7 +52,7 @@ impl Kind for Numbered {
         key()
     }
 
-    fn reads(program: i32) -> Result<Vec<Request>, Failure> {
+    fn reads(program: i32) -> Result<Vec<Request>> {
         Ok(vec![read(program)?])
     }
 }
@@ -63,12 +63,12 @@ fn key() -> &'static field::Field {
 }
 
 /// Request that reads a program.
-pub fn read(program: i32) -> Result<Request, Failure> {
+pub fn read(program: i32) -> Result<Request> {
     Request::new(Command::Resy, vec![Value::Number(program), Value::Number(0)]).map_err(|error| wrong(&error))
 }
 
 /// EEPROM cell of a program with these values.
-pub fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+pub fn cell(program: i32, values: Vec<Value>) -> Result<Cell> {
     let all: Vec<Value> = [Value::Number(program), Value::Number(0)].into_iter().chain(values).collect();
     let write = Request::new(Command::Wesy, all.clone()).map_err(|error| wrong(&error))?;
     let wanted = Command::Resy.row().answers[0].record(all).map_err(|error| wrong(&error))?;
@@ -100,11 +100,11 @@ impl eeprom_tables::Kind for Numbered {
         Layout::new("START={} LOOP={} END={}", &Command::Wesy.row().requests[0].fields[2..])
     }
 
-    fn read(program: i32) -> Result<Request, Failure> {
+    fn read(program: i32) -> Result<Request> {
         read(program)
     }
 
-    fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+    fn cell(program: i32, values: Vec<Value>) -> Result<Cell> {
         cell(program, values)
     }
 

@@ -23,16 +23,12 @@ impl Command for Get {
     type Report = Signals;
     const ID: &'static str = "toyo.io.get";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Signals, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Signals> {
         get(&self.signals, self.station, context).await
     }
 }
 
-async fn get(
-    arguments: &[SignalRange],
-    Station { station }: Station,
-    context: Context<'_, Toyo>,
-) -> Result<Signals, Failure> {
+async fn get(arguments: &[SignalRange], Station { station }: Station, context: Context<'_, Toyo>) -> Result<Signals> {
     if station != 0 && arguments.iter().any(|signals| signals.is_named) {
         return Err(Failure::usage("names belong to ports of station 0, the controller itself")
             .hint("type the port and the bit, such as IN1.3"));
@@ -61,7 +57,7 @@ impl Command for Watched {
     type Report = Signals;
     const ID: &'static str = "toyo.io.watched";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Signals, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Signals> {
         if self.signals.is_empty() {
             return list::all(self.station, context).await;
         }

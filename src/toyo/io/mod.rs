@@ -8,11 +8,9 @@
 
 mod get;
 mod list;
-mod port;
+pub mod port;
 mod read;
 mod set;
-
-pub(super) use port::{INPUTS, OUTPUTS, PortBank, ports_of};
 
 use crate::prelude::basics::*;
 

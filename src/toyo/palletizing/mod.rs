@@ -58,7 +58,7 @@ impl Kind for Numbered {
         field()
     }
 
-    fn reads(program: i32) -> Result<Vec<Request>, Failure> {
+    fn reads(program: i32) -> Result<Vec<Request>> {
         reads(program, &RECORDS.iter().collect::<Vec<_>>())
     }
 }
@@ -74,13 +74,13 @@ fn parse_program(text: &str) -> Result<i32, String> {
 }
 
 /// Requests that read records of a program.
-pub fn reads(program: i32, records: &[&Pallet]) -> Result<Vec<Request>, Failure> {
+pub fn reads(program: i32, records: &[&Pallet]) -> Result<Vec<Request>> {
     let read = |record: &&Pallet| Request::read_pallet(program, record);
     records.iter().map(read).collect::<Result<_, _>>().map_err(|error| wrong(&error))
 }
 
 /// EEPROM cell of a record with these values.
-pub fn cell(program: i32, record: &'static Pallet, values: Vec<Value>) -> Result<Cell, Failure> {
+pub fn cell(program: i32, record: &'static Pallet, values: Vec<Value>) -> Result<Cell> {
     Ok(Cell {
         read: Request::read_pallet(program, record).map_err(|error| wrong(&error))?,
         write: Request::write_pallet(program, record, &values).map_err(|error| wrong(&error))?,
@@ -181,7 +181,7 @@ impl Store for Records {
         record.name.to_owned()
     }
 
-    async fn open(link: &mut Link, options: &ProgramOptions) -> Result<Self, Failure> {
+    async fn open(link: &mut Link, options: &ProgramOptions) -> Result<Self> {
         Ok(Self { program: options.program, letters: link.letters().await? })
     }
 
@@ -227,7 +227,7 @@ impl Store for Records {
         unlisted(record)
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Answers<Record>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Answers<Record>> {
         let records: Vec<&Pallet> = keys.iter().map(|Key(record)| *record).collect();
         Ok(Answers::of(read_each(link, screen, "reading records", &reads(self.program, &records)?).await?))
     }
@@ -244,11 +244,11 @@ impl EepromRow for Records {
         record.layout
     }
 
-    fn request(&self, Key(record): Key) -> Result<Request, Failure> {
+    fn request(&self, Key(record): Key) -> Result<Request> {
         Request::read_pallet(self.program, record).map_err(|error| wrong(&error))
     }
 
-    fn cell(&self, Key(record): Key, values: Vec<Value>) -> Result<Cell, Failure> {
+    fn cell(&self, Key(record): Key, values: Vec<Value>) -> Result<Cell> {
         cell(self.program, record, values)
     }
 

@@ -37,7 +37,7 @@ pub struct Points {
 
 impl Points {
     /// The table of a task, or of the current task.
-    pub async fn of_task(link: &mut Link, task: Option<u8>) -> Result<Self, Failure> {
+    pub async fn of_task(link: &mut Link, task: Option<u8>) -> Result<Self> {
         Ok(Self { letters: link.letters().await?, selected_task: task, task: task.unwrap_or_default() })
     }
 
@@ -91,13 +91,13 @@ pub fn parse_point(text: &str) -> Result<i32, String> {
 }
 
 /// Request that reads a point.
-fn request(point: i32) -> Result<Request, Failure> {
+fn request(point: i32) -> Result<Request> {
     Request::read_parameter(table(), Some(point)).map_err(|error| wrong(&error))
 }
 
 /// Reads points of the selected task. Each point has its own result.
-pub async fn read(link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Records, Failure> {
-    let requests = points.iter().copied().map(request).collect::<Result<Vec<Request>, Failure>>()?;
+pub async fn read(link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Records> {
+    let requests = points.iter().copied().map(request).collect::<Result<Vec<Request>>>()?;
     read_each(link, screen, "reading points", &requests).await
 }
 
@@ -143,7 +143,7 @@ impl Store for Points {
         names_of::address_of(Kind::Point, point).unwrap_or_default()
     }
 
-    async fn open(link: &mut Link, options: &TaskOptions) -> Result<Self, Failure> {
+    async fn open(link: &mut Link, options: &TaskOptions) -> Result<Self> {
         Self::of_task(link, options.task).await
     }
 
@@ -151,12 +151,12 @@ impl Store for Points {
         if options.task.is_some() { Risk::Write } else { Risk::Read }
     }
 
-    async fn select(&mut self, link: &mut Link) -> Result<(), Failure> {
+    async fn select(&mut self, link: &mut Link) -> Result<()> {
         self.task = task_selection::select_task(link, self.selected_task).await?;
         Ok(())
     }
 
-    async fn deselect<T>(&self, link: &mut Link, outcome: Result<T, Failure>) -> Result<T, Failure> {
+    async fn deselect<T>(&self, link: &mut Link, outcome: Result<T>) -> Result<T> {
         task_selection::restore_task(link, outcome).await
     }
 
@@ -201,7 +201,7 @@ impl Store for Points {
         unlisted(record)
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Answers<Record>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Answers<Record>> {
         Ok(Answers::of(read(link, screen, points).await?))
     }
 }
@@ -211,7 +211,7 @@ impl EepromRow for Points {
         self.letters
     }
 
-    fn words(&self, words: &[String]) -> Result<Vec<String>, Failure> {
+    fn words(&self, words: &[String]) -> Result<Vec<String>> {
         let [only] = words else { return Ok(words.to_vec()) };
         let Some(file) = only.strip_prefix('@') else { return Ok(words.to_vec()) };
         let text = parse_printed_position(Path::new(file))?;
@@ -222,11 +222,11 @@ impl EepromRow for Points {
         table().body()
     }
 
-    fn request(&self, point: i32) -> Result<Request, Failure> {
+    fn request(&self, point: i32) -> Result<Request> {
         request(point)
     }
 
-    fn cell(&self, point: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+    fn cell(&self, point: i32, values: Vec<Value>) -> Result<Cell> {
         row_cell(table(), point, values)
     }
 

@@ -37,7 +37,7 @@ impl Command for Teach {
     const INTENT: &'static str = "overwrite a point";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Self::Report, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Self::Report> {
         if context.link.status_of(&[0]).await.known()?.is_some_and(|status| !status.homed()) {
             return Err(Failure::new(
                 Kind::ConditionNotMet,
@@ -54,7 +54,7 @@ impl Command for Teach {
 }
 
 impl Teach {
-    async fn teach(&self, context: Context<'_, Toyo>, points: &Points) -> Result<TeachReport, Failure> {
+    async fn teach(&self, context: Context<'_, Toyo>, points: &Points) -> Result<TeachReport> {
         let Context { link, screen, confirmer, .. } = context;
         let point = self.point;
         let current = read_position(link).await.known()?;
@@ -90,6 +90,6 @@ impl Teach {
 }
 
 /// Reads the position of the axes.
-async fn read_position(link: &mut Link) -> Result<Record, Failure> {
+async fn read_position(link: &mut Link) -> Result<Record> {
     link.ask(&Request::bare(Word::Mpst)).await
 }

@@ -43,7 +43,7 @@ impl Command for Diff {
         if self.task().is_some() { Risk::Write } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Difference, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Difference> {
         let Context { robot, link, screen, .. } = context;
         let name = files::display_path(&self.file);
         let bytes = files::read(&self.file)?;

@@ -31,7 +31,7 @@ impl Command for Edit {
     const INTENT: &'static str = "overwrite steps of a program";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<EditedProgram, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<EditedProgram> {
         let Context { robot, link, screen, several, confirmer } = context;
         if several {
             return Err(Failure::usage("the editor needs one robot").hint("select the robot with -r"));

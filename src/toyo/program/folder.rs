@@ -21,7 +21,7 @@ fn is_program(name: &str) -> bool {
 ///
 /// # Errors
 /// A file cannot be read, or the folder has no programs.
-pub fn programs_in(folder: &Path) -> Result<ProgramSet, Failure> {
+pub fn programs_in(folder: &Path) -> Result<ProgramSet> {
     let (mut set, manifest) = read_folder::<Controller>(folder, PROGRAMS)?;
     for file in &mut set.files {
         file.name = file.name.trim_end_matches(".txt").to_owned();
@@ -36,14 +36,14 @@ pub fn programs_in(folder: &Path) -> Result<ProgramSet, Failure> {
 ///
 /// # Errors
 /// A step cannot be read. In a dry run, the requests are recorded.
-pub async fn program_of(link: &mut Link, screen: &Screen, task: Option<u8>) -> Result<ProgramSet, Failure> {
+pub async fn program_of(link: &mut Link, screen: &Screen, task: Option<u8>) -> Result<ProgramSet> {
     let get = Get::whole(task);
     if link.is_dry_run() {
         return get.dry_run(link).await.and_then(|_| Err(unknown()));
     }
     let outcome = get.read(link, screen).await;
     let (task, _, answers) = task_selection::restore_task(link, outcome).await?;
-    let steps = answers.into_iter().collect::<Result<Vec<Record>, Failure>>()?;
+    let steps = answers.into_iter().collect::<Result<Vec<Record>>>()?;
     let style = Style { first: 1, is_whole: true, is_numbered: false };
     let bytes = program::listing(&steps, style, &Rows::new()).text.into_bytes();
     let name = format!("program-{task}");

@@ -25,7 +25,7 @@ impl Command for List {
         if self.used { Risk::Write } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Listed, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Listed> {
         let Context { link, screen, .. } = context;
         if link.is_dry_run() {
             task_selection::select_task(link, None).await?;
@@ -41,7 +41,7 @@ impl Command for List {
 }
 
 impl List {
-    async fn list(&self, link: &mut Link, screen: &Screen) -> Result<Listed, Failure> {
+    async fn list(&self, link: &mut Link, screen: &Screen) -> Result<Listed> {
         let current = task_selection::select_task(link, None).await?;
         let mut tasks = Vec::new();
         for (task, room) in (1..).zip(steps::rooms(link).await?) {

@@ -71,7 +71,7 @@ impl Command for ProgramPath {
         self.options.from().is_none() && (self.show.program.is_none() || self.task().is_some())
     }
 
-    fn run_alone(&self) -> Result<PathReport, Failure> {
+    fn run_alone(&self) -> Result<PathReport> {
         self.options.check(false)?;
         let source = match (self.options.from(), &self.show.program) {
             (Some(folder), _) => of_folder(folder, &format!("program-{}", self.task().unwrap_or(1)))?,
@@ -85,7 +85,7 @@ impl Command for ProgramPath {
         self.report(&source)
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<PathReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<PathReport> {
         let Context { link, screen, several, .. } = context;
         self.options.check(several)?;
         let set = program_of(link, screen, self.task()).await?;
@@ -110,7 +110,7 @@ impl ProgramPath {
         self.show.program.as_ref()?.parse().ok().filter(|task| (1..=4).contains(task))
     }
 
-    fn report(&self, source: &Source) -> Result<PathReport, Failure> {
+    fn report(&self, source: &Source) -> Result<PathReport> {
         let old = match self.options.compare() {
             Some(folder) => {
                 let name = if source.name.starts_with("program-") { source.name.as_str() } else { "program-1" };
@@ -123,7 +123,7 @@ impl ProgramPath {
 }
 
 /// A program of a backup, with its points and parameters.
-fn of_folder(folder: &Path, name: &str) -> Result<Source, Failure> {
+fn of_folder(folder: &Path, name: &str) -> Result<Source> {
     let set = programs_in(folder)?;
     let found = set.files.into_iter().find(|file| file.name == name);
     let file = found.ok_or_else(|| {
@@ -136,7 +136,7 @@ fn of_folder(folder: &Path, name: &str) -> Result<Source, Failure> {
     Ok(Source { has_all_points, ..of_file(file, points.as_deref(), parameters.as_deref())? })
 }
 
-fn of_file(file: ProgramFile, points: Option<&Path>, parameters: Option<&Path>) -> Result<Source, Failure> {
+fn of_file(file: ProgramFile, points: Option<&Path>, parameters: Option<&Path>) -> Result<Source> {
     let program = parse(&file)?;
     Ok(Source {
         lines: lines(&file),
@@ -158,14 +158,14 @@ fn lines(file: &ProgramFile) -> Vec<String> {
     String::from_utf8_lossy(&file.bytes).lines().map(|line| line.trim().to_owned()).collect()
 }
 
-fn parse(file: &ProgramFile) -> Result<Program, Failure> {
+fn parse(file: &ProgramFile) -> Result<Program> {
     let checked = check_file(file, MAX_STEPS, &Names::default(), &ControllerData::default());
     let errors: Vec<Finding> = checked.errors().cloned().collect();
     checked.program.ok_or_else(|| files::file_failure(&file.file, &errors))
 }
 
 /// Runs a program in the simulator and records its path.
-fn motion(source: &Source) -> Result<Motion, Failure> {
+fn motion(source: &Source) -> Result<Motion> {
     let Source { name, program, lines, data, has_parameters, .. } = source;
     // Without parameters, all axes belong to task 1.
     let task = if *has_parameters { source.task } else { 1 };

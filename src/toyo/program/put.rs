@@ -68,7 +68,7 @@ impl Command for Put {
     const INTENT: &'static str = "overwrite a program";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored> {
         let Context { robot, link, screen, confirmer, .. } = context;
         let name = self.name();
         let bytes = files::read(&self.file)?;
@@ -109,7 +109,7 @@ impl Put {
         (bytes, names): (&[u8], &Names),
         program: &Program,
         steps: RangeInclusive<u16>,
-    ) -> Result<Stored, Failure> {
+    ) -> Result<Stored> {
         let name = self.name();
         let first = self.at.unwrap_or(1);
         let (from, last) = (*steps.start(), *steps.end());
@@ -193,7 +193,7 @@ impl Put {
         task: u8,
         program: &Program,
         (from, last, end): (u16, u16, u16),
-    ) -> Result<Vec<Record>, Failure> {
+    ) -> Result<Vec<Record>> {
         let whole = from == 1 && end > last && !self.read_all;
         let steps = records(program);
         let source = link.sources.get(task).filter(|source| whole && source.has_all_steps(&steps, end));
@@ -218,7 +218,7 @@ impl Put {
         }
     }
 
-    async fn dry_run(&self, link: &mut Link, program: &Program, from: u16) -> Result<Stored, Failure> {
+    async fn dry_run(&self, link: &mut Link, program: &Program, from: u16) -> Result<Stored> {
         let first = self.at.unwrap_or(1);
         let last = last_of(first, program);
         task_selection::select_task(link, self.task).await?;
@@ -280,13 +280,7 @@ fn part(at: u16, tags: Option<BTreeSet<i32>>) -> Part {
 }
 
 /// Reads the tags of the steps before and after a part.
-async fn tags_around(
-    link: &mut Link,
-    screen: &Screen,
-    first: u16,
-    last: u16,
-    room: u16,
-) -> Result<BTreeSet<i32>, Failure> {
+async fn tags_around(link: &mut Link, screen: &Screen, first: u16, last: u16, room: u16) -> Result<BTreeSet<i32>> {
     let mut around = steps::read_all(link, screen, 1..=first - 1).await?;
     around.extend(steps::read_all(link, screen, last + 1..=room).await?);
     Ok(program::tags(&around, 1).into_keys().collect())

@@ -49,12 +49,12 @@ impl Command for Search {
         self.from.is_none()
     }
 
-    fn run_alone(&self) -> Result<SearchReport, Failure> {
+    fn run_alone(&self) -> Result<SearchReport> {
         let folder = self.from.as_deref().ok_or_else(|| Failure::local("internal error: no folder to read"))?;
         self.lines(programs_in(folder)?, &Names::default())
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<SearchReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SearchReport> {
         let Context { link, screen, robot, .. } = context;
         let Some(tag) = self.tag() else {
             let set = program_of(link, screen, self.task).await?;
@@ -85,7 +85,7 @@ impl Search {
         number.filter(|number| (1..=999).contains(number))
     }
 
-    fn lines(&self, set: ProgramSet, names: &Names) -> Result<SearchReport, Failure> {
+    fn lines(&self, set: ProgramSet, names: &Names) -> Result<SearchReport> {
         let parse = |file| read_program(file, &check_file(file, MAX_STEPS, names, &ControllerData::default()));
         let programs: Vec<Program> = set.files.iter().map(parse).collect();
         let kinds = [NameKind::Point, NameKind::Counter, NameKind::Timer, NameKind::Input, NameKind::Output];
@@ -96,7 +96,7 @@ impl Search {
         self.search.search(&programs, objects.as_slice(), set.unread).map(SearchReport::Lines)
     }
 
-    async fn find_tag(&self, link: &mut Link, tag: u16) -> Result<TagStep, Failure> {
+    async fn find_tag(&self, link: &mut Link, tag: u16) -> Result<TagStep> {
         let task = task_selection::select_task(link, self.task).await?;
         let status = link.status_of(&[0]).await?;
         if status.executing() || status.paused() {

@@ -34,7 +34,7 @@ impl Command for Show {
     type Report = Current;
     const ID: &'static str = "toyo.program.show";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Current, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Current> {
         let link = context.link;
         let (which, request) = (Request::bare(table::Command::Mtsk), steps::read_request(0));
         if link.is_dry_run() {

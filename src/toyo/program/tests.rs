@@ -31,7 +31,7 @@ impl Workspace {
         path.to_str().unwrap().to_owned()
     }
 
-    fn put(&mut self, text: &str, more: &[&str]) -> Result<Value, Failure> {
+    fn put(&mut self, text: &str, more: &[&str]) -> Result<Value> {
         let file = self.file(text);
         self.bench.run(&[&["program", "put", &file], more].concat()).map(|(data, _)| data)
     }

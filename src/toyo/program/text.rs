@@ -13,7 +13,7 @@ pub fn name(text: &str) -> Result<Name, String> {
 }
 
 /// Program of a text that was checked. Warnings are printed on stderr. If there are errors, fails.
-pub fn program(name: &str, checked: Checked, screen: &Screen) -> Result<Program, Failure> {
+pub fn program(name: &str, checked: Checked, screen: &Screen) -> Result<Program> {
     valid(name, &checked)?;
     for finding in checked.findings.iter().filter(|finding| finding.severity == Severity::Warning) {
         screen.note(&in_a_line(name, finding));
@@ -22,7 +22,7 @@ pub fn program(name: &str, checked: Checked, screen: &Screen) -> Result<Program,
 }
 
 /// Fails with all errors of a text that is not a valid program.
-pub fn valid(name: &str, checked: &Checked) -> Result<(), Failure> {
+pub fn valid(name: &str, checked: &Checked) -> Result<()> {
     let errors: Vec<Finding> = checked.errors().cloned().collect();
     if errors.is_empty() { Ok(()) } else { Err(files::file_failure(name, &errors)) }
 }

@@ -86,7 +86,7 @@ pub(super) async fn explain(
     entry: AlarmEntry<YercAlarmFields>,
     robot: &Robot,
     link: &mut Link,
-) -> Result<AlarmEntry<YercAlarmFields>, Failure> {
+) -> Result<AlarmEntry<YercAlarmFields>> {
     let code = entry.alarm.code.clone().unwrap_or_default();
     let find =
         |model| robot.alarms.find(Origin { family: Family::Yerc, robot: Some(&robot.name), model: Some(model) }, &code);

@@ -39,7 +39,7 @@ impl Command for Cmos {
     const ID: &'static str = "yerc.file.cmos";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files> {
         let Context { link, screen, robot, several, .. } = context;
         let Some(file) = self.file.as_deref().filter(|_| !self.start_only) else {
             return self.start(link, screen).await;
@@ -68,7 +68,7 @@ impl Command for Cmos {
 }
 
 impl Cmos {
-    async fn start(&self, link: &mut Link, screen: &Screen) -> Result<Files, Failure> {
+    async fn start(&self, link: &mut Link, screen: &Screen) -> Result<Files> {
         let _waiting = Waiting::new(screen, CREATE_TIMEOUT);
         // The transfer is ended at its first block, so that the controller keeps the backup that exists.
         let existed = |_: &[u8]| {
@@ -79,7 +79,7 @@ impl Cmos {
         Ok(created_files(FileItem::pending(NAME)))
     }
 
-    async fn make_and_fetch(&self, link: &mut Link, screen: &Screen, target: &Target) -> Result<Files, Failure> {
+    async fn make_and_fetch(&self, link: &mut Link, screen: &Screen, target: &Target) -> Result<Files> {
         let (mut draft, mut hash) = (target.begin()?, Hash::default());
         let requests = if self.download_only { &[FETCHING][..] } else { &[CREATE_TIMEOUT, FETCHING] };
         for what in requests {
@@ -100,11 +100,7 @@ impl Cmos {
         ))
     }
 
-    async fn ask(
-        &self,
-        link: &mut Link,
-        handle_block: impl FnMut(&[u8]) -> Result<(), Failure>,
-    ) -> Result<Option<u64>, Failure> {
+    async fn ask(&self, link: &mut Link, handle_block: impl FnMut(&[u8]) -> Result<()>) -> Result<Option<u64>> {
         transfer::fetch_backup(link, self.wait, handle_block).await.map_err(|failure| match failure.kind {
             Kind::OutcomeUnknown => failure.hint(
                 "wait, because the controller may still be busy; then use --download-only, or set a longer --wait",

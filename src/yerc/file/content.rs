@@ -32,7 +32,7 @@ pub struct JobRules {
 
 impl Content {
     /// Opens a file to send. The file must not be empty.
-    pub fn open(path: &Path) -> Result<Self, Failure> {
+    pub fn open(path: &Path) -> Result<Self> {
         let content = Self::open_file(path)?;
         if content.len == 0 {
             return Err(Failure::usage(format!("{} is empty", path.display()))
@@ -42,7 +42,7 @@ impl Content {
     }
 
     /// Opens a file for reading.
-    pub fn open_file(path: &Path) -> Result<Self, Failure> {
+    pub fn open_file(path: &Path) -> Result<Self> {
         let place = || path.display().to_string();
         let file = match files::open(path) {
             Err(error) if matches!(error.kind(), ErrorKind::IsADirectory | ErrorKind::Unsupported) => {
@@ -77,7 +77,7 @@ impl Content {
     }
 
     /// Checks a job before it is sent.
-    pub fn check_job(&mut self, rules: JobRules) -> Result<(), Failure> {
+    pub fn check_job(&mut self, rules: JobRules) -> Result<()> {
         let mut scan = JobScan::default();
         let mut pieces = self.pieces()?;
         loop {
@@ -107,7 +107,7 @@ impl Content {
     }
 
     /// Reader for the pieces of the file, from its beginning.
-    pub fn pieces(&mut self) -> Result<ContentReader<'_>, Failure> {
+    pub fn pieces(&mut self) -> Result<ContentReader<'_>> {
         self.file.rewind().with_context(|| self.path.display().to_string())?;
         let fixer = self.fixes.then(Fixer::default);
         Ok(ContentReader { file: &self.file, path: &self.path, fixer, hash: Hash::default() })
@@ -126,7 +126,7 @@ pub struct ContentReader<'a> {
 
 impl ContentReader<'_> {
     /// Returns the next piece, which is empty at the end.
-    pub fn next_piece(&mut self) -> Result<Vec<u8>, Failure> {
+    pub fn next_piece(&mut self) -> Result<Vec<u8>> {
         let mut piece = Vec::with_capacity(READ_SIZE);
         let read = self.file.take(READ_SIZE as u64).read_to_end(&mut piece);
         read.with_context(|| self.path.display().to_string())?;
@@ -264,7 +264,7 @@ mod tests {
         std::iter::from_fn(|| Some(pieces.next_piece().unwrap()).filter(|piece| !piece.is_empty())).flatten().collect()
     }
 
-    fn check(bytes: &[u8], rules: JobRules) -> Result<Vec<u8>, Failure> {
+    fn check(bytes: &[u8], rules: JobRules) -> Result<Vec<u8>> {
         let (_file, mut content) = content(bytes);
         content.check_job(rules)?;
         let sent = read(&mut content);

@@ -35,7 +35,7 @@ impl Command for Diff {
     const ID: &'static str = "yerc.file.diff";
     const USES_FILES: bool = true;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Difference, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Difference> {
         let Context { link, screen, robot, several, .. } = context;
         let file = name::parse_name(link.encoding, &self.name)?;
         let local = self.local.clone().unwrap_or_else(|| {

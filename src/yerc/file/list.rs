@@ -28,7 +28,7 @@ impl Command for List {
     type Report = Files<Listed>;
     const ID: &'static str = "yerc.file.list";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files<Listed>, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files<Listed>> {
         let Context { link, screen, .. } = context;
         let filters = match &self.filter {
             Some(filter) => vec![(filter.clone(), None)],

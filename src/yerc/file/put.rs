@@ -48,7 +48,7 @@ impl Command for Put {
     const INTENT: &'static str = "overwrite files of the same name";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files> {
         let Context { link, screen, confirmer, .. } = context;
         let mut deliveries = self.deliveries(link.encoding)?;
         let mut results: Vec<FileItem> = Vec::with_capacity(deliveries.len());
@@ -89,7 +89,7 @@ impl Command for Put {
 
 impl Put {
     /// All files to upload. They are checked before the first upload.
-    fn deliveries(&self, encoding: Encoding) -> Result<Vec<Delivery>, Failure> {
+    fn deliveries(&self, encoding: Encoding) -> Result<Vec<Delivery>> {
         if self.name.is_some() && self.files.len() > 1 {
             return Err(Failure::usage("--as needs exactly one file").hint("send the files one by one"));
         }
@@ -119,7 +119,7 @@ impl Put {
 }
 
 /// File name on the controller for a local file.
-fn named_after(encoding: Encoding, path: &Path) -> Result<FileName, Failure> {
+fn named_after(encoding: Encoding, path: &Path) -> Result<FileName> {
     let invalid = |why: String| {
         Failure::usage(format!("{}: {why}", path.display())).hint("set the name on the controller with --as")
     };

@@ -40,7 +40,7 @@ impl Command for Get {
     type Report = Signals;
     const ID: &'static str = "yerc.io.get";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Signals, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Signals> {
         let Context { link, robot, screen, .. } = context;
         let names = names::of_robot(robot, screen);
         let signals: Vec<Signal> =

@@ -20,7 +20,7 @@ impl Command for List {
     type Report = Signals;
     const ID: &'static str = "yerc.io.list";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Signals, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Signals> {
         let Context { link, robot, screen, .. } = context;
         let names = names::of_robot(robot, screen);
         let groups = |model| -> Vec<u16> {

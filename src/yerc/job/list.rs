@@ -14,7 +14,7 @@ impl Command for List {
     type Report = Listing;
     const ID: &'static str = "yerc.job.list";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Listing, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Listing> {
         let Context { link, screen, .. } = context;
         let selected = SelectedJob::ask(link).await?;
         if link.is_dry_run() {

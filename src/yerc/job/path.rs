@@ -64,7 +64,7 @@ impl Command for JobPath {
         self.options.from().is_none() && self.file().is_none()
     }
 
-    fn run_alone(&self) -> Result<PathReport, Failure> {
+    fn run_alone(&self) -> Result<PathReport> {
         self.options.check(false)?;
         if let (None, Some(path)) = (self.options.from(), self.file()) {
             let bytes = text_files::read(&path)?;
@@ -86,7 +86,7 @@ impl Command for JobPath {
         self.report(&name, &jobs)
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<PathReport, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<PathReport> {
         let Context { link, several, .. } = context;
         self.options.check(several)?;
         let name = if let Some(job) = &self.job {
@@ -116,7 +116,7 @@ impl JobPath {
         self.job.as_ref().map(PathBuf::from).filter(|path| path.is_file())
     }
 
-    fn report(&self, name: &str, jobs: &Jobs) -> Result<PathReport, Failure> {
+    fn report(&self, name: &str, jobs: &Jobs) -> Result<PathReport> {
         let motion = motion(name, jobs, None);
         let old = match self.options.compare() {
             Some(folder) => {
@@ -133,7 +133,7 @@ impl JobPath {
     }
 }
 
-fn jobs_of_folder(folder: &Path) -> Result<Jobs, Failure> {
+fn jobs_of_folder(folder: &Path) -> Result<Jobs> {
     let (set, encoding) = jobs_in(folder)?;
     let text = |file: &armctl_frame::programs::source::ProgramFile| {
         (without_suffix(&file.name).to_owned(), encoding.decode(&file.bytes))
@@ -142,7 +142,7 @@ fn jobs_of_folder(folder: &Path) -> Result<Jobs, Failure> {
 }
 
 /// File of a job on the controller.
-fn job_file(link: &Link, name: &str) -> Result<FileName, Failure> {
+fn job_file(link: &Link, name: &str) -> Result<FileName> {
     let bytes = link.encoding.encode_name(&format!("{name}.JBI"));
     exact(bytes.map_err(|error| {
         Failure::usage(format!("the job name: {error}"))
@@ -151,7 +151,7 @@ fn job_file(link: &Link, name: &str) -> Result<FileName, Failure> {
 }
 
 /// Reads a job from the controller, the jobs that it calls, and the P variables of its moves.
-async fn read(link: &mut Link, name: &str) -> Result<Jobs, Failure> {
+async fn read(link: &mut Link, name: &str) -> Result<Jobs> {
     let mut jobs = Jobs::default();
     let mut open = vec![name.to_owned()];
     while let Some(next) = open.pop().filter(|_| jobs.texts.len() <= MAX_CALLED) {

@@ -32,7 +32,7 @@ impl JobSource {
     ///
     /// # Errors
     /// The errors of [`jobs_in`].
-    pub fn folder(&self) -> Result<(&Path, ProgramSet, Encoding), Failure> {
+    pub fn folder(&self) -> Result<(&Path, ProgramSet, Encoding)> {
         let folder = self.from.as_deref().ok_or_else(|| Failure::local("internal error: no folder to read"))?;
         let (set, encoding) = jobs_in(folder)?;
         Ok((folder, set, encoding))
@@ -44,7 +44,7 @@ impl JobSource {
 ///
 /// # Errors
 /// A file cannot be read, or the folder has no jobs.
-pub fn jobs_in(folder: &Path) -> Result<(ProgramSet, Encoding), Failure> {
+pub fn jobs_in(folder: &Path) -> Result<(ProgramSet, Encoding)> {
     let (set, manifest): (ProgramSet, Option<Manifest>) = read_folder(folder, JOBS)?;
     let is_utf8 = set.files.iter().all(|file| std::str::from_utf8(&file.bytes).is_ok());
     let otherwise = if is_utf8 { Encoding::Utf8 } else { Encoding::default() };
@@ -99,7 +99,7 @@ fn form_of(file: &ProgramFile, name: &str, name_in_file: Option<&str>) -> Vec<Fi
 ///
 /// # Errors
 /// The list of jobs cannot be read, or the connection is lost.
-pub async fn jobs_of(link: &mut Link, screen: &Screen) -> Result<ProgramSet, Failure> {
+pub async fn jobs_of(link: &mut Link, screen: &Screen) -> Result<ProgramSet> {
     if link.is_dry_run() {
         plan_all(link, "the jobs of the controller", [files::list(FileType::Jbi)])?;
         link.then("armctl downloads every listed job, and acknowledges each block");

@@ -36,12 +36,12 @@ impl Command for Search {
         self.source.from.is_none()
     }
 
-    fn run_alone(&self) -> Result<Matches, Failure> {
+    fn run_alone(&self) -> Result<Matches> {
         let (folder, set, encoding) = self.source.folder()?;
         self.find(set, encoding, &names_in(folder, encoding))
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Matches, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Matches> {
         let Context { link, screen, robot, .. } = context;
         let names = names::of_robot(robot, screen);
         // A wrong object is reported before the jobs are read.
@@ -55,12 +55,12 @@ impl Command for Search {
 const KINDS: [NameKind; 2] = [NameKind::Variable, NameKind::Signal];
 
 impl Search {
-    fn find(&self, set: ProgramSet, encoding: Encoding, names: &Names) -> Result<Matches, Failure> {
+    fn find(&self, set: ProgramSet, encoding: Encoding, names: &Names) -> Result<Matches> {
         self.search.search(&parse(&set, encoding), &self.objects(names)?, set.unread)
     }
 
     /// Names in instructions of the object of `--uses`.
-    fn objects(&self, names: &Names) -> Result<Vec<String>, Failure> {
+    fn objects(&self, names: &Names) -> Result<Vec<String>> {
         let Some(text) = self.search.uses() else { return Ok(Vec::new()) };
         let objects = names_of(text);
         if !objects.is_empty() {

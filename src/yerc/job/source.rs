@@ -21,7 +21,7 @@ pub struct Source {
 
 impl Source {
     /// Downloads the file of a job, and finds the current line in it.
-    pub async fn read(link: &mut Link, job: &JobInfo) -> Result<Self, Failure> {
+    pub async fn read(link: &mut Link, job: &JobInfo) -> Result<Self> {
         let name = [job.name.as_bytes(), b".JBI"].concat();
         let (mut hash, mut content) = (Hash::default(), Vec::new());
         fetch(link, &exact(name.clone())?, |piece| {

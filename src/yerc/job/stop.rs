@@ -21,7 +21,7 @@ impl<const IS_OF_JOB: bool> Command for Stop<IS_OF_JOB> {
         true
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<SetReport> {
         context.link.ask(&query::Hold(true)).await?;
         let words = "HOLD is on and the job is stopped; to continue it, use `yerc hold off` and `yerc job start`";
         // A stop must not be delayed by a read, so the old value is not read, as in `hold on`.

@@ -463,7 +463,7 @@ pub(super) fn split<'a, T>(
     flag: &str,
     base: Option<&'a Values>,
     station: Option<&'a Values>,
-) -> Result<Part<'a, T>, Failure> {
+) -> Result<Part<'a, T>> {
     let wrong = |message: String| {
         Err(Failure::usage(message).hint(
             "use one command for the robot and one command for the station: they cannot move in one command (FS and \

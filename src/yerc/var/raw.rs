@@ -14,12 +14,7 @@ use armctl_frame::store::describe_change;
 
 /// Asks the user to confirm a raw request that writes positions. `intent` is the text for a request that armctl cannot
 /// decode.
-pub async fn confirm_raw(
-    link: &mut Link,
-    confirmer: &Confirmer<'_>,
-    request: &Request,
-    intent: String,
-) -> Result<(), Failure> {
+pub async fn confirm_raw(link: &mut Link, confirmer: &Confirmer<'_>, request: &Request, intent: String) -> Result<()> {
     let Some(references) = references(request) else { return confirmer.confirm(&Change::new(intent)).await };
     let TaughtPositions { positions, has_unread } = read_taught(link, &references).await?;
     let new: Vec<Option<(Reference, Value)>> = references
@@ -44,7 +39,7 @@ struct TaughtPositions {
 }
 
 /// Reads positions one by one, because each can be undefined. A dry run records the requests.
-async fn read_taught(link: &mut Link, references: &[Reference]) -> Result<TaughtPositions, Failure> {
+async fn read_taught(link: &mut Link, references: &[Reference]) -> Result<TaughtPositions> {
     let mut taught = TaughtPositions { positions: HashMap::new(), has_unread: false };
     for reference in references {
         let question = ReadVariable::new(reference.kind, reference.number);

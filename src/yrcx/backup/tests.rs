@@ -36,7 +36,7 @@ impl Workspace {
     }
 
     /// Runs a command line. `@` in the line is replaced by the folder.
-    fn run(&mut self, line: &str) -> Result<(Value, Option<Failure>), Failure> {
+    fn run(&mut self, line: &str) -> Result<(Value, Option<Failure>)> {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>())?;
         let Self { runtime, robot, link, .. } = self;

@@ -18,7 +18,7 @@ pub const UNKNOWN: &str = "a backup contains no programs, arms, pulses per mm, p
                            the twin has those of a new simulator";
 
 /// Start state with the data of a backup.
-pub fn start(folder: &Path) -> Result<Start, Failure> {
+pub fn start(folder: &Path) -> Result<Start> {
     let manifest: Manifest<Controller> = manifest::open_existing(folder)?;
     let saved = |part: &Part| manifest.entry(&part.to_string()).is_some_and(|entry| entry.copy.is_some());
     let refused = |why: String| impossible(folder, &why);
@@ -36,7 +36,7 @@ pub fn start(folder: &Path) -> Result<Start, Failure> {
     }
     let start = Start::parse(&state).map_err(refused)?;
     let parts = Part::in_order_of_writing().filter(saved).map(|part| load(part, folder));
-    let mut tables = parts.filter_map(Result::transpose).collect::<Result<Vec<Table<Yrcx>>, Failure>>()?;
+    let mut tables = parts.filter_map(Result::transpose).collect::<Result<Vec<Table<Yrcx>>>>()?;
     let frames = frames(&mut tables)?;
     let words: Vec<Words> = frames.iter().filter_map(|frame| words(&frame["wi"])).collect();
     let writes = |words: &&Words| Row::from_word(words[0]).is_some_and(|row| row.risk > Risk::Read);

@@ -32,12 +32,12 @@ impl Command for PointPath {
         self.options.from().is_none()
     }
 
-    fn run_alone(&self) -> Result<PathReport, Failure> {
+    fn run_alone(&self) -> Result<PathReport> {
         self.options.check(false)?;
         self.report(&self.points_of(self.options.from().unwrap_or(Path::new(".")))?)
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<PathReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<PathReport> {
         let Context { link, screen, several, .. } = context;
         self.options.check(several)?;
         let table = Numbered::<Points>::default();
@@ -55,7 +55,7 @@ impl Command for PointPath {
 
 impl PointPath {
     /// The points of a backup that the user typed.
-    fn points_of(&self, folder: &Path) -> Result<Vec<(i32, FourAxes)>, Failure> {
+    fn points_of(&self, folder: &Path) -> Result<Vec<(i32, FourAxes)>> {
         let manifest = open_existing::<Controller>(folder)?;
         let copies = manifest.files.iter().filter_map(|entry| entry.copy.as_ref());
         let mut all = BTreeMap::new();
@@ -65,7 +65,7 @@ impl PointPath {
         Ok(self.numbers.iter().filter_map(|number| Some((*number, all.remove(number)?))).collect())
     }
 
-    fn report(&self, points: &[(i32, FourAxes)]) -> Result<PathReport, Failure> {
+    fn report(&self, points: &[(i32, FourAxes)]) -> Result<PathReport> {
         let new = motion(points, None);
         let old = self.options.compare().map(|folder| self.points_of(folder)).transpose()?;
         let old = old.map(|points| motion(&points, Some(new.unit)));

@@ -35,7 +35,7 @@ impl fieldbus::Search for Search {
         if self.adapters.is_empty() { Scope::Nothing } else { Scope::Network }
     }
 
-    fn search(&self, _wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>> {
+    fn search(&self, _wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>>> {
         async move {
             let mut all = Vec::new();
             for (url, bus) in &self.adapters {
@@ -53,7 +53,7 @@ impl fieldbus::Search for Search {
     }
 }
 
-fn found_node(url: &str, node: &Node) -> Result<Device, Failure> {
+fn found_node(url: &str, node: &Node) -> Result<Device> {
     let sign = if url.contains('?') { '&' } else { '?' };
     Ok(Device {
         address: format!("{url} MAC {}", node.mac),

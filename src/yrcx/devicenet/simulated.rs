@@ -22,7 +22,7 @@ const COMPACT: &str = "devicenet-compact";
 pub(super) const MAC: u8 = 5;
 
 /// Starts a simulator behind an SLCAN adapter on the loopback interface, with the faults of the URL.
-pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>, Failure> {
+pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>> {
     let faults = faults_of_url(sim, &FAULTS)?;
     let setup = Setup::sample_controller(Mac::new(MAC).unwrap_or_default(), Bitrate::K500, size(sim.bus));
     let listen = Listen::Tcp(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));

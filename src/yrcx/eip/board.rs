@@ -54,7 +54,7 @@ impl Board {
     }
 
     /// Reads the identity; `None` if the board does not support the request.
-    pub async fn identity(&mut self) -> Result<Option<Identity>, Failure> {
+    pub async fn identity(&mut self) -> Result<Option<Identity>> {
         match self.client.identity().await {
             Ok(identity) => Ok(identity.map(Identity::from)),
             Err(EipError::Encapsulation { .. }) => Ok(None),
@@ -63,7 +63,7 @@ impl Board {
     }
 
     /// Reads the list of services; `None` if the board does not support the request.
-    pub async fn services(&mut self) -> Result<Option<Vec<&'static str>>, Failure> {
+    pub async fn services(&mut self) -> Result<Option<Vec<&'static str>>> {
         match self.client.services().await {
             Ok(services) => Ok(services.map(|services| {
                 let known = [(5, "messages over TCP"), (8, "images over UDP")];
@@ -75,14 +75,14 @@ impl Board {
     }
 
     /// Reads an attribute, or all attributes of an instance.
-    pub async fn get(&mut self, object: Object) -> Result<Vec<u8>, Failure> {
+    pub async fn get(&mut self, object: Object) -> Result<Vec<u8>> {
         let answer = self.client.ask(object.reading(), &object.get()).await;
         let answer = answer.map_err(|error| self.failure(error))?;
         if answer.status.is_ok() { Ok(answer.data) } else { Err(self.refused(object.reading(), object, &answer)) }
     }
 
     /// Writes an attribute. The request is sent only once, so if the answer is lost, the outcome is unknown.
-    pub async fn set(&mut self, object: Object, value: &[u8]) -> Result<(), Failure> {
+    pub async fn set(&mut self, object: Object, value: &[u8]) -> Result<()> {
         // Check with a harmless request first that the board answers.
         self.services().await?;
         let answer = match self.client.ask(SETTING, &object.set(value)).await {
@@ -100,7 +100,7 @@ impl Board {
     }
 
     /// Reads the image of the controller.
-    pub async fn image(&mut self) -> Result<Image, Failure> {
+    pub async fn image(&mut self) -> Result<Image> {
         let object = Object { class: ASSEMBLY, instance: self.eip.input, attribute: Some(IMAGE) };
         let bytes = self.get(object).await?;
         let image = bytes.get(..Image::BYTES).and_then(Image::from_bytes);
@@ -112,7 +112,7 @@ impl Board {
     }
 
     /// Reads assemblies to find the existing assemblies and their sizes. `identity` is the identity of the board.
-    pub async fn survey(&mut self, identity: Option<&Identity>) -> Result<ProbeResult, Failure> {
+    pub async fn survey(&mut self, identity: Option<&Identity>) -> Result<ProbeResult> {
         let url_instances = self.url_instances();
         let exchanged = Instances { output: url_instances.input, input: url_instances.output, ..url_instances };
         let usual = Instances { output: USUAL_OUTPUT, input: USUAL_INPUT, ..url_instances };
@@ -122,14 +122,14 @@ impl Board {
 
     /// Finds the connection parameters. For this, armctl also requests connections. `identity` is the identity of the
     /// board.
-    pub async fn probe(&mut self, identity: Option<&Identity>) -> Result<ProbeResult, Failure> {
+    pub async fn probe(&mut self, identity: Option<&Identity>) -> Result<ProbeResult> {
         let url_instances = self.url_instances();
         let found = probe::probe(&mut self.client, url_instances).await.map_err(|error| self.failure(error))?;
         Ok(ProbeResult::of(&found, &self.eip, identity))
     }
 
     /// Reads whether the assemblies of the URL exist: input, output.
-    pub async fn assemblies(&mut self) -> Result<[(u32, AssemblyPresence); 2], Failure> {
+    pub async fn assemblies(&mut self) -> Result<[(u32, AssemblyPresence); 2]> {
         let Instances { output, input, .. } = self.url_instances();
         let mut found = [(input, AssemblyPresence::Unknown), (output, AssemblyPresence::Unknown)];
         for (instance, presence) in &mut found {

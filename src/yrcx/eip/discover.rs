@@ -41,7 +41,7 @@ impl fieldbus::Search for Search {
         }
     }
 
-    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>> {
+    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>>> {
         async move {
             let mut targets = [&self.targets[..], &self.broadcast].concat();
             let is_open = targets.is_empty();
@@ -69,7 +69,7 @@ impl fieldbus::Search for Search {
     }
 }
 
-fn found_board(found: discovery::DiscoveredDevice) -> Result<Device, Failure> {
+fn found_board(found: discovery::DiscoveredDevice) -> Result<Device> {
     let (host, port) = (found.address.ip(), found.address.port());
     let scheme = SCHEME.name;
     let target = if port == PORT { format!("{scheme}://{host}") } else { format!("{scheme}://{host}:{port}") };

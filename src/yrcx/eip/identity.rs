@@ -20,7 +20,7 @@ impl BoardReport for IdentityReport {
     const ID: &'static str = "yrcx.eip.identity";
     const MESSAGES: &'static str = "messages that read the identity and the services of the board";
 
-    async fn read(board: &mut Board) -> Result<Self, Failure> {
+    async fn read(board: &mut Board) -> Result<Self> {
         let address = board.address().to_string();
         let Some(identity) = board.identity().await? else {
             return Err(Failure::new(Kind::Malformed, format!("{}: the board has no identity", board.label()))

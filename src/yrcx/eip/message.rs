@@ -30,7 +30,7 @@ impl Command for Get {
     const ID: &'static str = "yrcx.eip.get";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Value, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Value> {
         context.link.reject_unit_of::<Board>()?;
         let object = Object { class: self.class, instance: self.instance, attribute: self.attribute };
         let about = format!("{} of {object}", object.reading());
@@ -84,7 +84,7 @@ impl Command for Set {
         format!("set {} to {}", self.object(), hex_pairs(&self.data.0))
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport> {
         context.link.reject_unit_of::<Board>()?;
         let object = self.object();
         let (asked, about) = (object.set_bytes(&self.data.0), format!("Set_Attribute_Single of {object}"));

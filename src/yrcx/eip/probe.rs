@@ -31,7 +31,7 @@ impl Command for Probe {
         if self.tries { Risk::Motion } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport> {
         context.link.reject_unit_of::<Board>()?;
         context.link.then("messages that read the identity and the assemblies of the board");
         if self.tries {

@@ -17,7 +17,7 @@ use armctl_transport::fault::{self, FaultNames, FaultSpec, SimulatorFaults};
 use armctl_transport::image::ImagePeer;
 
 /// Starts a simulator as an adapter on the loopback interface, with the faults of the URL.
-pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>, Failure> {
+pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>> {
     let faults = faults_of_url(sim, &FAULTS)?;
     let listen = AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST);
     let server = serve(start(sim)?, listen, faults);

@@ -17,7 +17,7 @@ impl Command for Arm {
     type Report = Arms;
     const ID: &'static str = "yrcx.info.arm";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Arms, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Arms> {
         let link = context.link;
         let selected = link.draft(table::Command::ArmDesignation)?.valid_order()?;
         let current = link.draft(table::Command::ArmStatus)?.valid_order()?;

@@ -41,7 +41,7 @@ impl Command for PositionArguments {
         self.continuous
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<RobotPosition, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<RobotPosition> {
         if self.within.is_some() && !self.continuous && self.until.is_none() {
             return Err(Failure::usage("--for needs --continuous or --until").hint("add one of them, or remove --for"));
         }

@@ -22,7 +22,7 @@ impl Command for Get {
     const ID: &'static str = "yrcx.io.get";
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals> {
         let names = names::of_robot(context.robot, context.screen);
         let given = context.link.output_image().copied();
         if given.is_none()

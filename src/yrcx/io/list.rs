@@ -17,7 +17,7 @@ impl Command for List {
     const ID: &'static str = "yrcx.io.list";
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals> {
         let names = names::of_robot(context.robot, context.screen);
         let inputs = context.link.output_image().copied();
         let outputs = context.link.read_signals().await?;

@@ -61,7 +61,7 @@ impl Command for AbsReset {
         confirmation(self.command())
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport> {
         let draft = context.link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
         let Some(direction) = self.direction else {
             if self.end.no_wait() {

@@ -66,7 +66,7 @@ impl Command for Jog {
         self.within.is_none()
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport> {
         let link = context.link;
         let unit = self.report.unwrap_or(self.system.unit());
         let draft = link.draft(self.command())?.with(Key::Axes, self.axis.as_str());

@@ -77,7 +77,7 @@ impl Command for Origin {
         format!("return {} to origin", self.describe())
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport> {
         let draft = context.link.draft(self.command())?;
         let draft = draft.with_some(Key::Axes, self.axis.clone());
         let order = draft.with_some(Key::OriginAxes, self.only.map(Kind::value)).valid_order()?;

@@ -43,7 +43,7 @@ impl Motion for Push {
         self.destination.choose([Command::PushPoint, Command::PushMm, Command::PushPulse])
     }
 
-    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+    fn fill(&self, draft: Draft) -> Result<Draft> {
         let draft = self.destination.apply_to(draft.with(Key::Axes, self.axis.as_str()));
         self.pace.apply_to(draft.with_some(Key::PushForce, self.force.clone()).with_some(Key::PushTime, self.time))
     }

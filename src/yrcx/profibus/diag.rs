@@ -24,7 +24,7 @@ impl BoardReport for DiagnosisReport {
     const ID: &'static str = "yrcx.profibus.diag";
     const MESSAGES: &'static str = "telegrams that read state, diagnosis and configuration of the station";
 
-    async fn read(board: &mut Board) -> Result<Self, Failure> {
+    async fn read(board: &mut Board) -> Result<Self> {
         let diagnosis = board.diagnosis().await?;
         Ok(Self {
             station: board.settings().station,

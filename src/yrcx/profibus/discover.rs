@@ -27,7 +27,7 @@ impl fieldbus::Search for Search {
         if self.profibus.is_some() { Scope::Devices } else { Scope::Nothing }
     }
 
-    fn search(&self, _wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>> {
+    fn search(&self, _wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>>> {
         async move {
             let Some(line) = &self.profibus else { return Ok(Vec::new()) };
             let url = |station: u8| {
@@ -42,7 +42,7 @@ impl fieldbus::Search for Search {
     }
 }
 
-fn found(station: &Station, line: &str, target: String) -> Result<Device, Failure> {
+fn found(station: &Station, line: &str, target: String) -> Result<Device> {
     let ident = station.ident.as_deref().unwrap_or("-");
     let device = format!("{}, ident {ident}, {}", station.kind, station.diagnosis);
     Ok(Device {

@@ -36,7 +36,7 @@ impl Serve for ServeArgs {
         true
     }
 
-    fn serve(&self, ServeOptions { start, link, faults, .. }: ServeOptions<'_>) -> Result<RunningSimulation, Failure> {
+    fn serve(&self, ServeOptions { start, link, faults, .. }: ServeOptions<'_>) -> Result<RunningSimulation> {
         let options = Options {
             station: self.station,
             ident: self.ident,

@@ -35,7 +35,7 @@ impl Board {
     }
 
     /// Returns the interface, with the recorder of packets.
-    pub fn interface(&self) -> Result<Interface, Failure> {
+    pub fn interface(&self) -> Result<Interface> {
         let mut interface = Interface::find(&self.profinet.interface).map_err(|error| self.failure(error))?;
         interface.tap = self.tap.clone();
         Ok(interface)
@@ -45,7 +45,7 @@ impl Board {
     pub async fn ask<T: Send + 'static>(
         &self,
         question: impl FnOnce(&Interface) -> Result<T, ProfinetError> + Send + 'static,
-    ) -> Result<T, Failure> {
+    ) -> Result<T> {
         let interface = self.interface()?;
         match tokio::task::spawn_blocking(move || question(&interface)).await {
             Ok(answer) => answer.map_err(|error| self.failure(error)),
@@ -54,25 +54,25 @@ impl Board {
     }
 
     /// Finds the station.
-    pub async fn station(&self) -> Result<StationInfo, Failure> {
+    pub async fn station(&self) -> Result<StationInfo> {
         let station = self.profinet.station.clone();
         self.ask(move |interface| commission::find(interface, &station)).await
     }
 
     /// Reads the records of the station.
-    pub async fn identity(&self, found: StationInfo) -> Result<Identity, Failure> {
+    pub async fn identity(&self, found: StationInfo) -> Result<Identity> {
         self.ask(move |interface| commission::identity(interface, &found)).await
     }
 
     /// Finds another station with this name.
-    pub async fn namesake(&self, name: &str, than: &StationInfo) -> Result<Option<String>, Failure> {
+    pub async fn namesake(&self, name: &str, than: &StationInfo) -> Result<Option<String>> {
         let (station, mac) = (Station::Name(name.to_owned()), than.mac);
         let other = self.ask(move |interface| commission::find_duplicate(interface, &station, mac)).await?;
         Ok(other.map(|mac| format!("station {mac}")))
     }
 
     /// Finds another device that has this IP address.
-    pub async fn holder(&self, address: Ipv4Addr, than: &StationInfo) -> Result<Option<String>, Failure> {
+    pub async fn holder(&self, address: Ipv4Addr, than: &StationInfo) -> Result<Option<String>> {
         let (mac, own) = (than.mac, self.interface()?.mac);
         let other = self.ask(move |interface| commission::holder(interface, address, mac)).await?;
         Ok(other.map(|mac| if mac == own { "this machine".to_owned() } else { format!("the card {mac}") }))
@@ -85,7 +85,7 @@ impl Board {
         what: &'static str,
         block: Block,
         is_so: impl Fn(&dcp::Station) -> bool + Send + 'static,
-    ) -> Result<StationInfo, Failure> {
+    ) -> Result<StationInfo> {
         let mac = found.mac;
         let set = self.ask(move |interface| {
             let answer = commission::change(interface, mac, what, &block);
@@ -113,7 +113,7 @@ impl Board {
     }
 
     /// Opens a connection with this layout until data flows, then closes it. Returns the answer of the station.
-    pub async fn attempt(&self, layout: &Layout) -> Result<Result<(), ProfinetError>, Failure> {
+    pub async fn attempt(&self, layout: &Layout) -> Result<Result<(), ProfinetError>> {
         let profinet = Profinet { layout: Some(layout.clone()), gsdml: None, ..self.profinet.clone() };
         let settings = connect::settings(&profinet, Duration::ZERO).map_err(|error| self.failure_of(&error))?;
         Ok(connect::attempt(&profinet, settings, self.tap.clone()).await)

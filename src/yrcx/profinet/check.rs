@@ -158,7 +158,7 @@ fn left_out(layout: &Layout, real: &[RealModule]) -> Option<String> {
 }
 
 /// Connects to a simulator and reads the first image.
-async fn data(board: &Board, network: &Network, layers: &mut Layers) -> Result<Option<Image>, Failure> {
+async fn data(board: &Board, network: &Network, layers: &mut Layers) -> Result<Option<Image>> {
     let settings = connect::settings(board.settings(), Duration::ZERO);
     let Ok(settings) = settings else { return Ok(None) };
     let link = network.open(settings).map_err(|error| board.failure(error))?;

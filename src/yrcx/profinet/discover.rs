@@ -23,7 +23,7 @@ impl fieldbus::Search for Search {
         if self.interfaces.is_empty() { Scope::Nothing } else { Scope::Network }
     }
 
-    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>> {
+    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>>> {
         async move {
             let mut all = Vec::new();
             for name in &self.interfaces {
@@ -45,7 +45,7 @@ impl fieldbus::Search for Search {
     }
 }
 
-fn found_station(station: &Station, interface: &str) -> Result<Device, Failure> {
+fn found_station(station: &Station, interface: &str) -> Result<Device> {
     // A name that two stations have does not identify a station, so use the MAC address.
     let is_twice = station.remarks.iter().any(|remark| remark.ends_with("has the same name"));
     let place = if station.station.is_empty() || is_twice { &station.mac } else { &station.station };

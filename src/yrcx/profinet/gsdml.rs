@@ -22,7 +22,7 @@ impl OfflineCommand for ReadFile {
     type Report = DeviceDescription;
     const ID: &'static str = "yrcx.profinet.gsdml";
 
-    fn run(&self, _screen: &Screen) -> Result<DeviceDescription, Failure> {
+    fn run(&self, _screen: &Screen) -> Result<DeviceDescription> {
         let shown = self.file.display();
         let bytes = files::read(&self.file, gsdml::MAX_FILE_SIZE).map_err(|error| Failure::io(&shown, &error))?;
         let read = Gsdml::parse(&bytes).map_err(|error| {

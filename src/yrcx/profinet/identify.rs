@@ -17,7 +17,7 @@ impl Command for Identify {
     const ID: &'static str = "yrcx.profinet.identify";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<IdentityReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<IdentityReport> {
         context.link.reject_unit_of::<Board>()?;
         plan_search(context.link, context.robot)?;
         let found = context.link.board::<Board>()?.station().await?;

@@ -39,7 +39,7 @@ impl Command for Probe {
         if self.tries { Risk::Motion } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport> {
         let Context { robot, link, .. } = context;
         link.reject_unit_of::<Board>()?;
         link.then("calls that read I&M0 and the modules (ReadImplicit of 0xAFF0 and 0xF000)");
@@ -82,7 +82,7 @@ fn possible(board: &Board, identity: &Identity) -> Vec<Layout> {
 /// Maximum number of connection attempts.
 const MAX_ATTEMPTS: usize = 10;
 
-async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attempt>, Failure> {
+async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attempt>> {
     let mut tried: Vec<(Layout, Attempt)> = Vec::new();
     while let Some(layout) = left.pop_front().filter(|_| tried.len() < MAX_ATTEMPTS) {
         if tried.iter().any(|(other, _)| *other == layout) {

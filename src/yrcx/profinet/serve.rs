@@ -32,7 +32,7 @@ pub struct ServeArgs {
 const DEVICE_FAULTS: FaultNames<Fault> = FaultNames { link: &[], device: &Fault::ALL };
 
 impl Serve for ServeArgs {
-    fn serve(&self, ServeOptions { start, faults, .. }: ServeOptions<'_>) -> Result<RunningSimulation, Failure> {
+    fn serve(&self, ServeOptions { start, faults, .. }: ServeOptions<'_>) -> Result<RunningSimulation> {
         let Some(interface) = &self.interface else {
             return Err(Failure::usage("a PROFINET device needs an Ethernet interface")
                 .hint("add --interface IFACE; use `ip link` to list the interfaces"));

@@ -44,7 +44,7 @@ impl Command for Run {
         format!("run {}{}", self.which.describe(), self.repeat.describe())
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<RunReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<RunReport> {
         let Context { link, screen, .. } = context;
         let order = self.which.apply_to(link.draft(table::Command::ProgramRun)?).valid_order()?;
         let what = self.which.describe();
@@ -112,7 +112,7 @@ fn never_observed(what: &str) -> Failure {
 }
 
 /// Waits until no program runs. Returns whether a program was seen running.
-async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duration>) -> Result<bool, Failure> {
+async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duration>) -> Result<bool> {
     let lost = |failure: Failure| {
         let message = format!("{what} was started, but armctl could not read the result: {}", failure.message);
         Failure { kind: Kind::OutcomeUnknown, message, ..failure }.hint(
@@ -142,7 +142,7 @@ async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duratio
 /// Fails if an emergency stop or an alarm ended the program. An error in a program stops the program, but does not
 /// switch SO(03) on. Then only the alarm history shows that the program did not reach its end; `before` is its latest
 /// entry before the start.
-async fn alarmed(link: &mut Link, what: &str, before: Option<&AlarmEntry<Part>>) -> Result<(), Failure> {
+async fn alarmed(link: &mut Link, what: &str, before: Option<&AlarmEntry<Part>>) -> Result<()> {
     let image = link.look().await?;
     let latest = alarm::latest(link).await?;
     let is_new = latest.as_ref().is_some_and(|latest| before != Some(latest));

@@ -45,7 +45,7 @@ impl Alarm {
     ///
     /// # Errors
     /// If a family does not have this verb, which a test excludes.
-    pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
+    pub fn command(&self) -> Result<Box<dyn AnyCommand>> {
         Ok(match self {
             Self::List(_) => Box::new(List {}),
             Self::History => Box::new(SharedVerbCommands::new("alarm.history", SharedVerb::AlarmHistory)),
@@ -80,7 +80,7 @@ impl Command for List {
     const ID: &'static str = "alarm.list";
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
-    async fn run(&self, context: Context<'_, Fleet>) -> Result<ActiveAlarms, Failure> {
+    async fn run(&self, context: Context<'_, Fleet>) -> Result<ActiveAlarms> {
         let Context { robot, link, screen, several, .. } = context;
         link.open_link(screen).await?;
         let found = match link {

@@ -48,7 +48,7 @@ pub struct Watch {
 
 impl Io {
     /// Command for robots of any family.
-    pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
+    pub fn command(&self) -> Result<Box<dyn AnyCommand>> {
         let (id, verb, words) = match self {
             Self::Get(Get { signals }) => ("io.get", "get", signals.clone()),
             Self::Watch(Watch { signals, .. }) => ("io.watch", "watch", signals.clone()),

@@ -18,7 +18,7 @@ use armctl_frame::report::sheet_of;
 use armctl_frame::{AnyCommand, AnyReport, Driver, Outcome};
 
 /// A parsed command, or the error.
-type Parsed = Result<Box<dyn AnyCommand>, Failure>;
+type Parsed = Result<Box<dyn AnyCommand>>;
 
 /// A read command that all families have. Of several commands, each family uses the first command that it has.
 pub struct SharedLine {
@@ -34,17 +34,17 @@ pub struct SharedLine {
 
 impl SharedLine {
     /// Parses a line; `id` is its command id in envelopes and schemas.
-    pub fn new(id: &'static str, words: Vec<String>) -> Result<Self, Failure> {
+    pub fn new(id: &'static str, words: Vec<String>) -> Result<Self> {
         Self::parse_first_family(id, vec![words], false)
     }
 
     /// Reads a value of any kind by its name or label: `NOUN get NAME` with the first noun that has the name.
-    pub fn reading(id: &'static str, nouns: &[&str], name: &str) -> Result<Self, Failure> {
+    pub fn reading(id: &'static str, nouns: &[&str], name: &str) -> Result<Self> {
         let lines = nouns.iter().map(|noun| [*noun, "get", name].map(ToOwned::to_owned).into());
         Self::parse_first_family(id, lines.collect(), true)
     }
 
-    fn parse_first_family(id: &'static str, lines: Vec<Vec<String>>, is_reduced: bool) -> Result<Self, Failure> {
+    fn parse_first_family(id: &'static str, lines: Vec<Vec<String>>, is_reduced: bool) -> Result<Self> {
         let default_line: Vec<(Family, Parsed)> = Family::ALL
             .into_iter()
             .map(|family| (family, names::detect_names(|| parse_first(family, &lines)).0))
@@ -142,7 +142,7 @@ struct ReadItem {
 }
 
 impl Reading {
-    fn new(report: &dyn AnyReport) -> Result<Self, Failure> {
+    fn new(report: &dyn AnyReport) -> Result<Self> {
         let data = report.data()?;
         let text = |value: &Value| value.as_str().map(ToOwned::to_owned);
         let item = |item: &Value| ReadItem {

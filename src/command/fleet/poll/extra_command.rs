@@ -22,7 +22,7 @@ pub struct Extra {
 }
 
 /// A parsed command, or the error.
-pub type Read = Result<Box<dyn AnyCommand>, Failure>;
+pub type Read = Result<Box<dyn AnyCommand>>;
 
 const EXAMPLE: &str = "type a command such as 'yerc var get B0..B9' or 'toyo counter get'";
 
@@ -31,7 +31,7 @@ impl Extra {
     ///
     /// # Errors
     /// If the text is not a command, does more than read, or does not end by itself.
-    pub fn parse(text: &str) -> Result<Self, Failure> {
+    pub fn parse(text: &str) -> Result<Self> {
         let wrong = |why: &str, hint: &str| Err(invalid(text, why, hint));
         let Some(words) = shlex::split(text) else { return wrong("has an unclosed quote", EXAMPLE) };
         if words.iter().any(|word| word.contains(';')) {

@@ -173,7 +173,7 @@ impl RobotTask {
     }
 
     /// Polls once, and runs the extra commands.
-    async fn poll(&mut self, link: &mut Link, id: &RobotId, wants: &MergedRequests) -> Result<PollResult, Failure> {
+    async fn poll(&mut self, link: &mut Link, id: &RobotId, wants: &MergedRequests) -> Result<PollResult> {
         let robot = Arc::clone(&self.robot);
         let mut sample = link.watch.look(wants.detail(id)).await?;
         let unexplained = sample.line.state.fault.explain(&robot).err();
@@ -191,7 +191,7 @@ impl RobotTask {
     }
 
     /// Runs an extra command, unless it needs a connection whose end would affect the controller.
-    async fn ask(&mut self, link: &mut Link, extra: &Extra) -> Result<Value, Failure> {
+    async fn ask(&mut self, link: &mut Link, extra: &Extra) -> Result<Value> {
         let command = self.extra_commands.entry(Arc::clone(extra.text())).or_insert_with(|| extra.of(&self.robot));
         let command = match command {
             None => extra.command(),

@@ -42,7 +42,7 @@ impl Plant {
         std::fs::write(self.path(), text).unwrap();
     }
 
-    fn poll(&self, selection: Selection) -> Result<Poll, Failure> {
+    fn poll(&self, selection: Selection) -> Result<Poll> {
         let inventory = Inventory::load(&Location::Named(self.path())).unwrap();
         Poll::new(&Sources { selection, inventory, ..Sources::default() }, Screen::silent())
     }

@@ -40,7 +40,7 @@ struct Session {
 }
 
 /// Session that the user chooses; `None` without sessions or without a terminal.
-async fn choose(run: &Run) -> Result<Option<String>, Failure> {
+async fn choose(run: &Run) -> Result<Option<String>> {
     if !run.screen.can_choose() {
         return Ok(None);
     }

@@ -24,7 +24,7 @@ pub struct SessionHost {
     /// Stops the motions of clients when this process ends.
     guardian: Rc<SessionGuardian>,
     /// Action after the link is closed.
-    finish: Option<Box<dyn FnOnce() -> Result<(), Failure>>>,
+    finish: Option<Box<dyn FnOnce() -> Result<()>>>,
     label: String,
 }
 
@@ -45,7 +45,7 @@ impl SessionHost {
         access: &Access,
         screen: &Screen,
         log: impl Fn(&str) + Clone + Send + 'static,
-    ) -> Result<OpenResult, Failure> {
+    ) -> Result<OpenResult> {
         let place = match SessionFolder::create() {
             Ok(place) => place,
             Err(error) => return Ok(OpenResult::NoPlace(folder_failure(&error))),
@@ -100,7 +100,7 @@ impl SessionHost {
     }
 
     /// Ends the session: informs clients, closes the link, completes the recording.
-    pub async fn end(self, why: &str, screen: &Screen) -> Result<(), Failure> {
+    pub async fn end(self, why: &str, screen: &Screen) -> Result<()> {
         if let Err(trouble) = self.host.end(why).await {
             screen.note(&format!("{}: the connection was not closed correctly: {trouble}", self.label));
         }
@@ -112,7 +112,7 @@ impl SessionHost {
 type Say = Arc<dyn Fn(&str) + Send + Sync>;
 
 /// Starts the thread without a link. Log messages go to `say`.
-pub fn start(say: impl Fn(&str) + Send + Sync + 'static) -> Result<(SessionManager, ManagerThread), Failure> {
+pub fn start(say: impl Fn(&str) + Send + Sync + 'static) -> Result<(SessionManager, ManagerThread)> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.context("start")?;
     let (orders, ordered) = mpsc::unbounded_channel();
@@ -168,7 +168,7 @@ async fn open_session_link(
     robot: Robot,
     access: Access,
     screen: Screen,
-    mut done: oneshot::Sender<Result<HeldBy, Failure>>,
+    mut done: oneshot::Sender<Result<HeldBy>>,
     held: Rc<RefCell<BTreeMap<String, HostHandle>>>,
     say: Say,
     mut ended: watch::Receiver<bool>,

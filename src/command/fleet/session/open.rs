@@ -96,7 +96,7 @@ impl Open {
     }
 
     /// Opens the link, and accepts clients.
-    async fn open(run: &Run, robot: &Robot, background: bool) -> Result<(Box<SessionHost>, Opened), Failure> {
+    async fn open(run: &Run, robot: &Robot, background: bool) -> Result<(Box<SessionHost>, Opened)> {
         let place = SessionFolder::create().map_err(|error| folder_failure(&error))?;
         let location = place.location(&session_key(robot));
         let log = background.then(|| location.log());
@@ -117,7 +117,7 @@ impl Open {
     }
 
     /// Serves until the session is closed or idle; both are normal.
-    async fn serve(&self, run: &Run, holding: Box<SessionHost>) -> Result<(), Failure> {
+    async fn serve(&self, run: &Run, holding: Box<SessionHost>) -> Result<()> {
         let mut holding = holding.with_idle_limit(self.idle);
         let why = match interruptible(holding.serve()).await {
             Ok(EndReason::Requested) => "the session was closed".to_owned(),

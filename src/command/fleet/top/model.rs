@@ -209,7 +209,7 @@ impl Model {
     }
 
     /// Handles the result of a poll.
-    pub fn take(&mut self, now: Moment, robot: usize, looked: Result<Sample, Failure>) {
+    pub fn take(&mut self, now: Moment, robot: usize, looked: Result<Sample>) {
         let every = self.every;
         if let Some(seen) = self.robots.get_mut(robot) {
             seen.take(now, every, looked);
@@ -343,7 +343,7 @@ impl RobotRow {
         own.into_iter().chain(self.tags.iter().map(String::as_str)).any(|text| text.to_lowercase().contains(wanted))
     }
 
-    fn take(&mut self, now: Moment, every: Duration, looked: Result<Sample, Failure>) {
+    fn take(&mut self, now: Moment, every: Duration, looked: Result<Sample>) {
         let sample = match looked {
             Ok(sample) => sample,
             Err(failure) => {

@@ -295,7 +295,7 @@ struct Source<'a, O> {
 impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
     /// Content of the file, unless it does not fit into memory and must be streamed; also the decoder, ready to
     /// restart.
-    fn capture<D: CaptureDecoder>(&self, mut decoder: D, room: usize, detail: Detail) -> Result<Captured<D>, Failure> {
+    fn capture<D: CaptureDecoder>(&self, mut decoder: D, room: usize, detail: Detail) -> Result<Captured<D>> {
         let frame = self.selection.frame;
         let mut kept = MessageBuffer::new(room, frame, detail);
         // For one packet, the links are still those of the whole file.
@@ -357,7 +357,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         decoder: &mut D,
         detail: Detail,
         mut each: impl FnMut(DecodedMessage<D::Field>) -> bool,
-    ) -> Result<Summary, Failure> {
+    ) -> Result<Summary> {
         decoder.decoded().detail = detail;
         let mut pass_on = |decoder: &mut D| decoder.decoded().messages.drain(..).all(&mut each);
         let mut is_wanted = true;

@@ -83,11 +83,7 @@ struct SecondPass<'a, 'b, O> {
 
 impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
     /// Passes on every message until the callback ends.
-    fn rows<D: CaptureDecoder>(
-        &self,
-        mut decoder: D,
-        mut each: impl FnMut(Row<D::Field>) -> bool,
-    ) -> Result<(), Failure> {
+    fn rows<D: CaptureDecoder>(&self, mut decoder: D, mut each: impl FnMut(Row<D::Field>) -> bool) -> Result<()> {
         let mut links = Links::default();
         let mut left = self.all;
         let row = |message: DecodedMessage<D::Field>| {
@@ -104,7 +100,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
         about: &Capture<D::Field>,
         layout: Layout,
         decoder: D,
-    ) -> Result<(), Failure> {
+    ) -> Result<()> {
         let screen = &run.screen;
         let (width, color) = (screen.width(), screen.stdout_color());
         let text = |text: String| render::text(&View::text(text), width, color);
@@ -136,7 +132,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
     }
 
     /// Messages as CSV, without their lists of fields.
-    fn csv<D: CaptureDecoder>(&self, run: &Run, decoder: D) -> Result<(), Failure> {
+    fn csv<D: CaptureDecoder>(&self, run: &Run, decoder: D) -> Result<()> {
         let sheet = Sheet::from_schema(&schema_of::<Capture<D::Field>>().to_value(), RowsOf::List("messages"));
         let (mut text, mut count) = (sheet.header(&[]), 0_usize);
         let mut written = Ok(());
