@@ -15,12 +15,7 @@ use armctl_controller::toyo::table::instructions::INSTRUCTIONS;
 use armctl_controller::toyo::{errors, read_only_filter, simulator};
 use armctl_frame::backup::family_backup::Backups;
 use armctl_frame::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
-use armctl_frame::face::layers::Layer;
-use armctl_frame::face::overview::OverviewReport;
-use armctl_frame::face::registration::Declaration;
-use armctl_frame::face::sample::Traffic;
-use armctl_frame::face::teach_panel::Panel;
-use armctl_frame::face::{HeldLink, Work};
+use armctl_frame::face::{Declaration, HeldLink, Layer, OverviewReport, Panel, Traffic, Work};
 use armctl_frame::robot::alarm::Alarm;
 use armctl_transport::session::host::Guard;
 

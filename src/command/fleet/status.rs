@@ -2,8 +2,7 @@
 
 use crate::command::families;
 use armctl_frame::dry_run::Plan;
-use armctl_frame::face::Face;
-use armctl_frame::face::overview::OverviewReport;
+use armctl_frame::face::{Face, OverviewReport};
 use armctl_frame::output::envelope::Envelope;
 use armctl_frame::prelude::*;
 use armctl_frame::script_line::Line;

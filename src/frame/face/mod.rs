@@ -17,11 +17,12 @@ use std::ffi::OsString;
 use clap::ArgMatches;
 
 use self::family_command::FamilyLine;
-use self::layers::Layer;
-use self::overview::OverviewReport;
-use self::sample::{Detail, Sample, Traffic};
+pub use self::layers::Layer;
+pub use self::overview::OverviewReport;
+pub use self::registration::Declaration;
+pub use self::sample::{Detail, Sample, Traffic};
 use self::shared_commands::SharedVerb;
-use self::teach_panel::Panel;
+pub use self::teach_panel::Panel;
 use self::tool::{Tool, ToolKind};
 use super::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
 use super::robot::alarm::Alarm;

@@ -22,7 +22,7 @@ pub struct SearchArguments {
     ignore_case: bool,
     /// Lines that use this object: an address, or a name of the robot
     #[arg(long, value_name = "OBJECT")]
-    uses: Option<String>,
+    pub uses: Option<String>,
     /// Lines that call or start this program
     #[arg(long, value_name = "NAME")]
     calls: Option<String>,
@@ -33,11 +33,6 @@ impl SearchArguments {
     pub fn only_pattern(&self) -> Option<&str> {
         let has_more = self.extended || self.ignore_case || self.uses.is_some() || self.calls.is_some();
         self.pattern.as_deref().filter(|_| !has_more)
-    }
-
-    /// Object of `--uses`.
-    pub fn uses(&self) -> Option<&str> {
-        self.uses.as_deref()
     }
 
     /// Finds the lines that meet all conditions. `objects` are the names of the object of `--uses` in references.

@@ -29,10 +29,11 @@ pub const AXES: usize = 4;
 /// The coordinate table of a task.
 #[derive(Debug)]
 pub struct Points {
-    letters: Letters,
+    /// Letters of the axes.
+    pub letters: Letters,
     selected_task: Option<u8>,
     /// Task that the points belong to.
-    task: u8,
+    pub task: u8,
 }
 
 impl Points {
@@ -44,16 +45,6 @@ impl Points {
     /// The table of a task, on a machine whose axes have these letters.
     pub const fn with_letters(task: u8, letters: Letters) -> Self {
         Self { letters, selected_task: Some(task), task }
-    }
-
-    /// Letters of the axes.
-    pub fn letters(&self) -> Letters {
-        self.letters
-    }
-
-    /// Task of the table.
-    pub fn task(&self) -> u8 {
-        self.task
     }
 }
 

@@ -63,15 +63,15 @@ impl Teach {
             points.plan(link, &[(point, Changes::of(vec![None; AXES]))]).await?;
             return Err(unknown());
         };
-        let coordinates = Coordinates::of(&current, points.letters());
-        let old = Coordinates::of(&stored, points.letters());
+        let coordinates = Coordinates::of(&current, points.letters);
+        let old = Coordinates::of(&stored, points.letters);
         let axes = ["x", "y", "z", "r"].map(|axis| Value::Number(current.number(axis).unwrap_or_default()));
         let new = points.cell(point, axes.into())?.wanted;
         let needs_confirmation = confirmer.asks_user();
         let change = describe_change(points, &[(point, Some(&stored), &new)]);
         confirmer.confirm(&change).await?;
         if needs_confirmation {
-            let moved_to = Coordinates::of(&read_position(link).await?, points.letters());
+            let moved_to = Coordinates::of(&read_position(link).await?, points.letters);
             if moved_to != coordinates {
                 let message = format!("the axes moved after the confirmation, to {}", position_text(&moved_to));
                 return Err(data_changed(format!("{message}; nothing was stored")));
@@ -85,7 +85,7 @@ impl Teach {
         let name = point.to_string();
         let taught =
             TeachReport::new(name, Some(old.position()), coordinates.position(), coordinates.position().of_group(UNIT));
-        Ok(taught.unchanged(is_stored).with("point", point).with("task", points.task()))
+        Ok(taught.unchanged(is_stored).with("point", point).with("task", points.task))
     }
 }
 

@@ -89,7 +89,7 @@ impl Search {
         let parse = |file| read_program(file, &check_file(file, MAX_STEPS, names, &ControllerData::default()));
         let programs: Vec<Program> = set.files.iter().map(parse).collect();
         let kinds = [NameKind::Point, NameKind::Counter, NameKind::Timer, NameKind::Input, NameKind::Output];
-        let objects = self.search.uses().map(|text| match names.find(&kinds, text) {
+        let objects = self.search.uses.as_deref().map(|text| match names.find(&kinds, text) {
             NameMatch::One(name) => name.address.clone(),
             _ => name_of(text),
         });

@@ -151,7 +151,7 @@ pub fn rehearse(file: &str, program: &Program, points: Option<&Path>) -> Result<
         rows: 0,
     };
     let sources = vec![Source { task: 1, file: file.to_owned(), program: program.clone() }];
-    run.trace(sources).map(|trace| trace.stop().cloned())
+    run.trace(sources).map(|trace| trace.stop)
 }
 
 impl Run {

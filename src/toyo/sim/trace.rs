@@ -71,15 +71,9 @@ pub struct Trace {
     rows_left_out: usize,
     #[serde(skip)]
     failure: Option<Failure>,
-    #[serde(skip)]
-    stop: Option<Stop>,
-}
-
-impl Trace {
     /// Location in task 1 at which the controller stopped with an error, or at which every task waited.
-    pub fn stop(&self) -> Option<&Stop> {
-        self.stop.as_ref()
-    }
+    #[serde(skip)]
+    pub stop: Option<Stop>,
 }
 
 /// Location of an error or of an endless wait.

@@ -61,7 +61,7 @@ impl Search {
 
     /// Names in instructions of the object of `--uses`.
     fn objects(&self, names: &Names) -> Result<Vec<String>> {
-        let Some(text) = self.search.uses() else { return Ok(Vec::new()) };
+        let Some(text) = &self.search.uses else { return Ok(Vec::new()) };
         let objects = names_of(text);
         if !objects.is_empty() {
             return Ok(objects);

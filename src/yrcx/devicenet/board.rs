@@ -20,7 +20,8 @@ const LISTEN: Duration = Duration::from_secs(1);
 /// DeviceNet node of a controller. The first request opens the adapter.
 #[derive(Debug)]
 pub struct Board {
-    node: DeviceNet,
+    /// Options of the URL.
+    pub node: DeviceNet,
     scheme: &'static Scheme,
     label: String,
     timeout: Duration,
@@ -41,11 +42,6 @@ impl Board {
             network: None,
             connection: None,
         })
-    }
-
-    /// Options of the URL.
-    pub fn node(&self) -> &DeviceNet {
-        &self.node
     }
 
     /// Opens the adapter, if necessary. armctl is then a node of the network.

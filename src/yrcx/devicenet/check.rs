@@ -10,7 +10,7 @@ pub(super) const LAYERS: &[&str] = &["name", "adapter", "bus", "MAC ID", "owner"
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
 pub(super) async fn check_layers(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
-    let node = board.node().clone();
+    let node = board.node.clone();
     layers.ok("name", format!("MAC {} behind {}", node.mac, node.place));
     let network = board.network().await.in_layer("adapter")?;
     layers.ok("adapter", format!("{} at {}", node.place, node.bitrate));

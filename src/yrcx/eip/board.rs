@@ -27,8 +27,10 @@ const USUAL_INPUT: u32 = 100;
 #[derive(Debug)]
 pub struct Board {
     client: Client,
-    eip: eip::Eip,
-    label: String,
+    /// Options of the URL.
+    pub eip: eip::Eip,
+    /// Robot in messages.
+    pub label: String,
 }
 
 impl Board {
@@ -36,16 +38,6 @@ impl Board {
     pub(super) async fn open(at: &ConnectionParameters<'_>) -> Result<Self, LinkError> {
         let (client, eip) = connect::client(at).await?;
         Ok(Self { client, eip, label: at.robot.label() })
-    }
-
-    /// Options of the URL.
-    pub fn settings(&self) -> &eip::Eip {
-        &self.eip
-    }
-
-    /// Robot in messages.
-    pub fn label(&self) -> &str {
-        &self.label
     }
 
     /// Returns the TCP address of the board.

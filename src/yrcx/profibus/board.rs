@@ -19,7 +19,8 @@ use armctl_transport::profibus::wire::{Configuration, Diagnosis, Flag, MAX_STATI
 /// PROFIBUS line of a URL. Each request opens the port.
 #[derive(Debug)]
 pub struct Board {
-    profibus: Profibus,
+    /// Options of the URL.
+    pub profibus: Profibus,
     label: String,
     timeout: Duration,
     tap: Tap,
@@ -40,11 +41,6 @@ impl Board {
         let profibus: &Profibus =
             bus.options().ok_or_else(|| Failure::local(format!("{bus:?} is not a URL of PROFIBUS")))?;
         Ok(Self { profibus: profibus.clone(), label: line.to_owned(), timeout: Duration::ZERO, tap })
-    }
-
-    /// Options of the URL.
-    pub const fn settings(&self) -> &Profibus {
-        &self.profibus
     }
 
     /// Finds all stations.

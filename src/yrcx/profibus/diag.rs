@@ -27,7 +27,7 @@ impl BoardReport for DiagnosisReport {
     async fn read(board: &mut Board) -> Result<Self> {
         let diagnosis = board.diagnosis().await?;
         Ok(Self {
-            station: board.settings().station,
+            station: board.profibus.station,
             ident: format!("{:#06x}", diagnosis.ident),
             master: diagnosis.master,
             states: diagnosis.flag_texts().collect(),

@@ -18,7 +18,8 @@ use armctl_transport::profinet::wire::dcp::{self, Block};
 /// Station of a URL. Each request opens the interface.
 #[derive(Debug)]
 pub struct Board {
-    profinet: Profinet,
+    /// Options of the URL.
+    pub profinet: Profinet,
     label: String,
     tap: Tap,
 }
@@ -27,11 +28,6 @@ impl Board {
     /// Station of a URL.
     pub fn new(at: &ConnectionParameters<'_>) -> Result<Self, LinkError> {
         Ok(Self { profinet: at.options::<Profinet>()?.clone(), label: at.robot.label(), tap: at.tap.clone() })
-    }
-
-    /// Options of the URL.
-    pub const fn settings(&self) -> &Profinet {
-        &self.profinet
     }
 
     /// Returns the interface, with the recorder of packets.

@@ -19,7 +19,7 @@ pub(super) const LAYERS: &[&str] = &["name", "interface", "privilege", "station"
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
 pub(super) async fn check_layers(board: &Board, layers: &mut Layers) -> Checked<Option<Image>> {
-    let profinet = board.settings().clone();
+    let profinet = board.profinet.clone();
     layers.ok("name", format!("{} through {}", profinet.station, profinet.interface));
     let interface = board.interface().in_layer("interface")?;
     let usable = interface.check().and_then(|()| interface.address());
@@ -80,7 +80,7 @@ async fn records(board: &Board, found: &StationInfo, layers: &mut Layers) -> Che
         }
         Err(error) => return Err(("RPC", board.failure(error))),
     }
-    let settings = match connect::settings(board.settings(), Duration::ZERO) {
+    let settings = match connect::settings(&board.profinet, Duration::ZERO) {
         Ok(settings) => Some(settings),
         Err(error) => {
             let advice = error.cause().advice.clone().unwrap_or_default();
@@ -159,7 +159,7 @@ fn left_out(layout: &Layout, real: &[RealModule]) -> Option<String> {
 
 /// Connects to a simulator and reads the first image.
 async fn data(board: &Board, network: &Network, layers: &mut Layers) -> Result<Option<Image>> {
-    let settings = connect::settings(board.settings(), Duration::ZERO);
+    let settings = connect::settings(&board.profinet, Duration::ZERO);
     let Ok(settings) = settings else { return Ok(None) };
     let link = network.open(settings).map_err(|error| board.failure(error))?;
     let mut link = ImageLink::in_process(Box::new(link));

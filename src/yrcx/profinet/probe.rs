@@ -64,7 +64,7 @@ impl Command for Probe {
 fn possible(board: &Board, identity: &Identity) -> Vec<Layout> {
     let bytes = u16::try_from(Image::BYTES).unwrap_or(u16::MAX);
     // An error is ignored, because this command is also for targets without a layout.
-    let told = connect::settings(board.settings(), Duration::ZERO).ok().map(|settings| settings.layout);
+    let told = connect::settings(&board.profinet, Duration::ZERO).ok().map(|settings| settings.layout);
     let guessed = match &identity.modules {
         Ok(real) => candidate_layouts::layouts(real, bytes),
         // Start with any layout: the answer of the device lists its real modules.

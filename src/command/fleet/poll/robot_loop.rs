@@ -11,8 +11,7 @@ use super::{CLOSE_TIMEOUT, Event, EventSender, Extra, PollResult, RobotId, wait_
 use crate::command::families;
 use armctl_controller::simulator::recording::AnswerLog;
 use armctl_frame::ConnectionEffect;
-use armctl_frame::face::Watch;
-use armctl_frame::face::sample::Traffic;
+use armctl_frame::face::{Traffic, Watch};
 use armctl_frame::prelude::*;
 use armctl_frame::session_client::is_held;
 use armctl_frame::shared_session::open_shared_session;
