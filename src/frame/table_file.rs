@@ -27,7 +27,7 @@ pub struct SheetTarget {
     target: Target,
     dialect: Dialect,
     /// Content of the existing file, which an update keeps.
-    old: Option<Vec<u8>>,
+    pub old: Option<Vec<u8>>,
 }
 
 impl SheetManner {
@@ -58,11 +58,6 @@ impl SheetManner {
 }
 
 impl SheetTarget {
-    /// Content of the existing file, whose rows get new values.
-    pub fn old(&self) -> Option<&[u8]> {
-        self.old.as_deref()
-    }
-
     /// Writes the rows atomically, and returns the path. The first column identifies a row; `canonical` normalizes its
     /// text.
     pub fn write(

@@ -236,7 +236,7 @@ impl Report for Jobs {
         let texts: Vec<Cell> = sources
             .map(|source| match (source.data(), source.error()) {
                 (_, Some(error)) => error.cell(),
-                (Some(source), None) => source.text().unwrap_or("(line not in the job file)").into(),
+                (Some(source), None) => source.text.as_deref().unwrap_or("(line not in the job file)").into(),
                 (None, None) => "".into(),
             })
             .collect();

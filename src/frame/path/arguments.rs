@@ -53,26 +53,16 @@ pub struct PathOptions {
     html: Option<PathBuf>,
     /// Draw over the motion in this backup, and report which positions differ
     #[arg(long, value_name = "FOLDER", requires = "path", add = ValueKind::Backup)]
-    compare: Option<PathBuf>,
+    pub compare: Option<PathBuf>,
     /// Read from this backup. Needs no robot
     #[arg(long, value_name = "FOLDER", requires = "path", add = ValueKind::Backup)]
-    from: Option<PathBuf>,
+    pub from: Option<PathBuf>,
     /// Replace the files of --svg and --html if they exist
     #[arg(long, requires = "path")]
     force: bool,
 }
 
 impl PathOptions {
-    /// Folder of `--compare`.
-    pub fn compare(&self) -> Option<&Path> {
-        self.compare.as_deref()
-    }
-
-    /// Folder of `--from`.
-    pub fn from(&self) -> Option<&Path> {
-        self.from.as_deref()
-    }
-
     /// Checks the files to write, before anything is sent. With `several` robots, files are not possible.
     ///
     /// # Errors

@@ -46,7 +46,7 @@ impl<S: Store> Command for Dump<S> {
         let Context { link, screen, several, .. } = context;
         let target = self.manner.target(self.file.clone(), several)?;
         // An update writes all rows of the file, including rows that are blank now.
-        let old = target.old();
+        let old = target.old.as_deref();
         let keys = old
             .filter(|_| self.rows.is_empty())
             .map_or_else(|| Ok(self.chosen()), |old| keys_of::<S>(&self.file, old))?;

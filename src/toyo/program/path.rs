@@ -68,12 +68,12 @@ impl Command for ProgramPath {
     }
 
     fn takes_robot(&self) -> bool {
-        self.options.from().is_none() && (self.show.program.is_none() || self.task().is_some())
+        self.options.from.is_none() && (self.show.program.is_none() || self.task().is_some())
     }
 
     fn run_alone(&self) -> Result<PathReport> {
         self.options.check(false)?;
-        let source = match (self.options.from(), &self.show.program) {
+        let source = match (self.options.from.as_deref(), &self.show.program) {
             (Some(folder), _) => of_folder(folder, &format!("program-{}", self.task().unwrap_or(1)))?,
             (None, program) => {
                 let path = PathBuf::from(program.as_deref().unwrap_or("-"));
@@ -111,7 +111,7 @@ impl ProgramPath {
     }
 
     fn report(&self, source: &Source) -> Result<PathReport> {
-        let old = match self.options.compare() {
+        let old = match self.options.compare.as_deref() {
             Some(folder) => {
                 let name = if source.name.starts_with("program-") { source.name.as_str() } else { "program-1" };
                 Some(motion(&of_folder(folder, name)?)?)

@@ -18,7 +18,8 @@ pub struct Content {
     /// Number of bytes to send.
     len: u64,
     fixes: bool,
-    job_name: Option<Vec<u8>>,
+    /// Name in the line `//NAME` of a job that was checked.
+    pub job_name: Option<Vec<u8>>,
 }
 
 /// What [`Content::check_job`] does with an invalid job.
@@ -64,11 +65,6 @@ impl Content {
     /// Number of bytes to send.
     pub fn size(&self) -> u64 {
         self.len
-    }
-
-    /// Name in the line `//NAME` of a job that was checked.
-    pub fn job_name(&self) -> Option<&[u8]> {
-        self.job_name.as_deref()
     }
 
     /// Whether line endings are converted.
@@ -286,7 +282,7 @@ mod tests {
     fn reads_the_name_of_a_job() {
         let (_file, mut content) = content(b"/JOB\r\n//NAME A B\r\nNOP\r\nEND\r\n//NAME C\r\n");
         content.check_job(JobRules::default()).unwrap();
-        assert_eq!(content.job_name(), Some(&b"A B"[..]));
+        assert_eq!(content.job_name.as_deref(), Some(&b"A B"[..]));
     }
 
     #[test]

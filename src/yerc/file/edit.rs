@@ -90,7 +90,7 @@ impl Edit {
             return Err(Failure::usage(format!("the job has //NAME {own}, but its name is {sent}"))
                 .hint("rename a job on the pendant, or send it as a new job with `yerc file put`"));
         }
-        if delivery.content.job_name().is_none() {
+        if delivery.content.job_name.is_none() {
             return Err(Failure::usage("the line //NAME is missing").hint(
                 "add the line //NAME with the name of the job; without it, the controller would refuse the job",
             ));

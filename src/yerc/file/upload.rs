@@ -123,7 +123,7 @@ impl Delivery {
     pub fn name_in_job(&self, encoding: Encoding) -> Option<(String, String)> {
         let file = self.file.as_bytes();
         let stem = file.get(..file.len().saturating_sub(4)).unwrap_or(file);
-        let own = self.content.job_name().filter(|own| *own != stem)?;
+        let own = self.content.job_name.as_deref().filter(|own| *own != stem)?;
         Some((encoding.decode(own), encoding.decode(stem)))
     }
 }

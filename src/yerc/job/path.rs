@@ -61,12 +61,12 @@ impl Command for JobPath {
     const USES_FILES: bool = true;
 
     fn takes_robot(&self) -> bool {
-        self.options.from().is_none() && self.file().is_none()
+        self.options.from.is_none() && self.file().is_none()
     }
 
     fn run_alone(&self) -> Result<PathReport> {
         self.options.check(false)?;
-        if let (None, Some(path)) = (self.options.from(), self.file()) {
+        if let (None, Some(path)) = (self.options.from.as_deref(), self.file()) {
             let bytes = text_files::read(&path)?;
             let text = String::from_utf8(bytes).unwrap_or_else(|error| Encoding::default().decode(error.as_bytes()));
             let name = JobText::new(&text).name.map(ToOwned::to_owned);
@@ -76,7 +76,7 @@ impl Command for JobPath {
             jobs.texts.insert(name.clone(), text);
             return self.report(&name, &jobs);
         }
-        let jobs = jobs_of_folder(self.options.from().unwrap_or(Path::new(".")))?;
+        let jobs = jobs_of_folder(self.options.from.as_deref().unwrap_or(Path::new(".")))?;
         let job = self.job.as_deref().ok_or_else(|| {
             Failure::usage("the name of the job is missing")
                 .hint("type a job, such as `yerc job show WELD --path --from FOLDER`")
@@ -118,7 +118,7 @@ impl JobPath {
 
     fn report(&self, name: &str, jobs: &Jobs) -> Result<PathReport> {
         let motion = motion(name, jobs, None);
-        let old = match self.options.compare() {
+        let old = match self.options.compare.as_deref() {
             Some(folder) => {
                 let old = jobs_of_folder(folder)?;
                 check_names(&[name.to_owned()], old.texts.keys().map(String::as_str)).map_err(|failure| Failure {

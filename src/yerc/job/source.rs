@@ -16,7 +16,7 @@ pub struct Source {
     /// SHA-256 of the file, as in backups.
     sha256: String,
     /// Text of the line; null if the file does not have the line.
-    text: Option<String>,
+    pub text: Option<String>,
 }
 
 impl Source {
@@ -32,11 +32,6 @@ impl Source {
         .await?;
         let text = line(&content, job.line).map(|line| link.encoding.decode(line));
         Ok(Self { file: link.encoding.decode(&name), sha256: hash.hex(), text })
-    }
-
-    /// Text of the line.
-    pub fn text(&self) -> Option<&str> {
-        self.text.as_deref()
     }
 }
 

@@ -29,12 +29,12 @@ impl Command for PointPath {
     const USES_FILES: bool = true;
 
     fn takes_robot(&self) -> bool {
-        self.options.from().is_none()
+        self.options.from.is_none()
     }
 
     fn run_alone(&self) -> Result<PathReport> {
         self.options.check(false)?;
-        self.report(&self.points_of(self.options.from().unwrap_or(Path::new(".")))?)
+        self.report(&self.points_of(self.options.from.as_deref().unwrap_or(Path::new(".")))?)
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<PathReport> {
@@ -67,7 +67,7 @@ impl PointPath {
 
     fn report(&self, points: &[(i32, FourAxes)]) -> Result<PathReport> {
         let new = motion(points, None);
-        let old = self.options.compare().map(|folder| self.points_of(folder)).transpose()?;
+        let old = self.options.compare.as_deref().map(|folder| self.points_of(folder)).transpose()?;
         let old = old.map(|points| motion(&points, Some(new.unit)));
         self.options.report(Drawing::new(new, old))
     }
