@@ -95,7 +95,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let screen = cli.globals.screen();
     screen.use_for_exit();
     files::set_draft_hook(catch_interrupts);
-    twin::register(|family, folder| families::of(family).twin(folder));
+    twin::register(|family, folder| (families::of(family).twin)(folder));
     if let Err(failure) = format {
         return exit(Err(report_failure(&screen, failure.into())));
     }

@@ -87,7 +87,7 @@ impl fmt::Debug for FamilyWord {
 
 impl Subcommand for FamilyWord {
     fn augment_subcommands(command: Command) -> Command {
-        command.subcommands(FAMILIES.map(|face| face.augment(Command::new(face.family().name()))))
+        command.subcommands(FAMILIES.map(|face| (face.augment)(Command::new(face.family.name()))))
     }
 
     fn augment_subcommands_for_update(command: Command) -> Command {
@@ -106,7 +106,7 @@ impl FromArgMatches for FamilyWord {
 
     fn from_arg_matches_mut(matches: &mut ArgMatches) -> Result<Self, clap::Error> {
         let (family, mut matches) = families::by_name(matches)?;
-        Ok(Self { family, typed: families::of(family).read(&mut matches)? })
+        Ok(Self { family, typed: (families::of(family).read)(&mut matches)? })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {

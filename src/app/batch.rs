@@ -5,25 +5,19 @@
 
 use std::cell::RefCell;
 use std::ffi::OsString;
-use std::path::Path;
 use std::rc::Rc;
-use std::sync::Arc;
-
-use anyhow::Context as _;
-use serde_json::Value;
 
 use super::parser::Parser;
 use super::prepare::{Invocation, PreparedCommand};
 use super::{line_words, name_lookup};
 use crate::cli::Words;
 use crate::command::fleet::session::host;
-use armctl_files as files;
 use armctl_frame::batch::Batch;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::flags::Globals;
 use armctl_frame::interrupt::catch_interrupts;
-use armctl_frame::output::{Format, Screen};
-use armctl_frame::run::{RunError, begin_trace};
+use armctl_frame::output::Format;
+use armctl_frame::prelude::*;
+use armctl_frame::run::begin_trace;
 use armctl_frame::script_line::{Line, Origin};
 use armctl_frame::session_manager::SessionManager;
 use armctl_frame::settings::rehearsal::Rehearsals;
@@ -54,7 +48,7 @@ pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
 }
 
 /// Rejects the options for repetition, because they belong to a single line and not to the file.
-pub fn refuse_repetition(globals: &Globals) -> Result<(), Failure> {
+pub fn refuse_repetition(globals: &Globals) -> Result<()> {
     if globals.watch.is_some() || globals.count.is_some() || globals.until.is_some() {
         return Err(Failure::usage("--watch, --count and --until cannot apply to a batch")
             .hint("write these flags after a command in the file"));
@@ -62,7 +56,7 @@ pub fn refuse_repetition(globals: &Globals) -> Result<(), Failure> {
     Ok(())
 }
 
-pub fn read(path: &Path) -> Result<String, Failure> {
+pub fn read(path: &Path) -> Result<String> {
     let limit = files::SETTINGS;
     let bytes = if path.as_os_str() == "-" { files::stdin(limit) } else { files::read(path, limit) };
     let bytes = bytes.with_context(|| path.display().to_string())?;
@@ -73,7 +67,7 @@ pub fn read(path: &Path) -> Result<String, Failure> {
 }
 
 /// Flags of a rehearsed line. Its output is collected in one form, and its simulator stays alive after the line.
-fn rehearsed(globals: Globals) -> Result<Globals, Failure> {
+fn rehearsed(globals: Globals) -> Result<Globals> {
     if globals.config.is_some() {
         return Err(Failure::usage("a rehearsal reaches only the robots of the backup, not those of --config")
             .hint("remove --config from the line"));
@@ -108,7 +102,7 @@ pub struct Planned {
 
 impl Plan<'_> {
     /// Prepares all lines. If there are errors, returns the errors of all lines.
-    pub fn lines(&self, text: &str) -> Result<Vec<Planned>, Failure> {
+    pub fn lines(&self, text: &str) -> Result<Vec<Planned>> {
         let file: Arc<str> = self.batch.file.display().to_string().into();
         let mut parser = Parser::default();
         let mut planned = Vec::new();
@@ -134,7 +128,7 @@ impl Plan<'_> {
         Err(failure.hint(format!("{hint}; nothing was sent: armctl checks the whole file first")))
     }
 
-    fn line(&self, parser: &mut Parser, line: &str, origin: &Origin) -> Result<Option<Planned>, Failure> {
+    fn line(&self, parser: &mut Parser, line: &str, origin: &Origin) -> Result<Option<Planned>> {
         let usage = |why: String| Failure::usage(why).hint("see `armctl help batch`");
         let value = |name: &str| {
             let set = self.batch.set.iter().rev().find(|(other, _)| other == name);
@@ -153,13 +147,7 @@ impl Plan<'_> {
     }
 
     /// Prepares a command line. `typed` is the line as the user typed it.
-    pub fn words(
-        &self,
-        parser: &mut Parser,
-        words: Vec<String>,
-        typed: &str,
-        origin: &Origin,
-    ) -> Result<Planned, Failure> {
+    pub fn words(&self, parser: &mut Parser, words: Vec<String>, typed: &str, origin: &Origin) -> Result<Planned> {
         let args: Vec<OsString> = std::iter::once("armctl".to_owned()).chain(words).map(OsString::from).collect();
         let parsed = name_lookup::parse(parser, &args, Some(self.globals), true);
         let Words { globals, command } = parsed.map_err(|refusal| refusal.failure())?;
@@ -181,11 +169,11 @@ impl Plan<'_> {
             return Err(Failure::usage("this command cannot run from a file").hint("see `armctl help batch`"));
         };
         let ready = PreparedCommand::new(globals, Some(self.globals), task, Some(line))?;
-        if let Some(why) = ready.why_not_in_batch() {
+        if let Some(why) = ready.task.properties().why_not_in_batch {
             return Err(Failure::usage(format!("this command cannot run from a file: {why}"))
                 .hint("run it in another terminal"));
         }
-        if self.rehearsal.is_some() && !ready.can_rehearse() {
+        if self.rehearsal.is_some() && !ready.task.properties().can_rehearse {
             return Err(Failure::usage(
                 "this command cannot be rehearsed: it does not only use the robots of the backup",
             )

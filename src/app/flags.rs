@@ -1,79 +1,15 @@
 //! Check for global flags that have no effect on a command. Such flags are errors.
 
 use super::prepare::Task;
-use crate::command::common::Common;
+use crate::command::common::{Common, FlagGroups};
 use crate::command::fleet::robots::Robots;
 use armctl_frame::failure::Failure;
 use armctl_frame::flags::Globals;
 use armctl_frame::gate::OnInterrupt;
 
-/// Groups of global flags that a command uses. All commands also use the output flags.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "each is an independent group of flags")]
-struct FlagGroups {
-    robots: bool,
-    /// Flags for the link, for example the timeout.
-    link: bool,
-    /// `--watch` and the other flags for repetition.
-    repeat: bool,
-    /// `--yes` and `--dry-run`.
-    gate: bool,
-}
-
-const ALL: FlagGroups = FlagGroups { robots: true, link: true, repeat: true, gate: true };
-const NONE: FlagGroups = FlagGroups { robots: false, link: false, repeat: false, gate: false };
-
-impl FlagGroups {
-    fn for_task(task: &Task) -> Self {
-        match task {
-            Task::Family(_, command) if command.driver().is_none() => NONE,
-            Task::Family(..) => ALL,
-            Task::Common(common) => Self::for_common(common),
-        }
-    }
-
-    fn for_common(common: &Common) -> Self {
-        match common {
-            Common::Backup(backup) if !backup.takes_robot() => NONE,
-            Common::Diff(diff) if !diff.may_ask_robots() => NONE,
-            Common::Status(_)
-            | Common::Alarm(_)
-            | Common::Io(_)
-            | Common::Position
-            | Common::Stop
-            | Common::Wait(_)
-            | Common::Top(_)
-            | Common::Restore(_)
-            | Common::Backup(_)
-            | Common::Diff(_)
-            | Common::Robots(Robots::Check(_)) => ALL,
-            Common::Record(_) => Self { gate: false, ..ALL },
-            #[cfg(feature = "plant")]
-            Common::Serve(_) => Self { gate: false, ..ALL },
-            #[cfg(feature = "plant")]
-            Common::Publish(_) => ALL,
-            Common::Session(_) | Common::Report(_) => Self { repeat: false, ..ALL },
-            Common::Robots(Robots::List) | Common::Names(_) => Self { robots: true, ..NONE },
-            Common::Robots(Robots::Discover(_)) => Self { link: true, gate: true, ..NONE },
-            Common::Explain(_) => Self { robots: true, link: true, ..NONE },
-            // These commands show the settings that a link would use, or check a connection, so they use the link
-            // flags.
-            Common::Robots(Robots::Show(_)) | Common::Setup(_) => Self { link: true, ..NONE },
-            Common::Robots(_)
-            | Common::Sim(_)
-            | Common::Decode(_)
-            | Common::Wireshark(_)
-            | Common::Completions(_)
-            | Common::Man(_)
-            | Common::Schema(_)
-            | Common::Help(_) => NONE,
-        }
-    }
-}
-
 /// Rejects a flag that has no effect on the command.
 pub fn check(globals: &Globals, task: &Task) -> Result<(), Failure> {
-    let uses = FlagGroups::for_task(task);
+    let uses = task.properties().flags;
     match global_flags(globals).into_iter().find(|(flag, is_meant)| flag.is_some() && !is_meant(uses)) {
         Some((Some(flag), _)) => Err(unused_flag(flag, task)),
         _ => Ok(()),

@@ -1,6 +1,5 @@
 //! Comparison of each line in `command/example_lines` with the decisions of the gate.
 
-use std::collections::BTreeSet;
 use std::ffi::OsString;
 
 use clap::CommandFactory as _;
@@ -20,7 +19,6 @@ use armctl_frame::output::redraw::Redraw;
 use armctl_frame::output::{ColorChoice, Format};
 use armctl_frame::prelude::*;
 use armctl_frame::settings::inventory::Inventory;
-use armctl_frame::settings::target::Family;
 use armctl_frame::settings::{Selection, Sources};
 
 const STOPS: [&str; 7] =
@@ -74,9 +72,9 @@ fn named(name: &str) -> Selection {
 /// Intent of a line, and what the gate decides about it.
 struct LineIntent {
     intent: Intent,
-    alone: Result<(), Failure>,
-    read_only: Result<(), Failure>,
-    fleet: Result<(), Failure>,
+    alone: Result<()>,
+    read_only: Result<()>,
+    fleet: Result<()>,
 }
 
 fn observe(line: &str) -> Result<LineIntent, String> {
@@ -121,8 +119,7 @@ fn gate_checks_every_command() {
             }
         };
         let is_stop = STOPS.iter().any(|stop| line.starts_with(stop));
-        let refused =
-            |outcome: &Result<(), Failure>| outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Rejected);
+        let refused = |outcome: &Result<()>| outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Rejected);
         let is_when_known = intent.confirmation == Confirmation::WhenKnown;
         let is_asked = risk == Motion || risk == Destroy && !is_when_known;
         for (what, is_right) in [

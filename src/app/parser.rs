@@ -180,7 +180,7 @@ fn parse_first_word(args: &[OsString]) -> Option<FirstWord> {
 /// Parses with only the commands that the line names. Returns `None` if this fails.
 fn parse_named_commands(last: &mut Option<Command>, family: Family, args: &[OsString]) -> Option<Words<FamilyWord>> {
     let is_named = |name: &str| args.iter().any(|word| word == name);
-    let word = families::of(family).lay_out(Command::new(family.name()), &is_named);
+    let word = (families::of(family).lay_out)(Command::new(family.name()), &is_named);
     let command = last.insert(Words::<NoSubcommand>::command().subcommand(word));
     read(command, args).ok()
 }
@@ -234,7 +234,7 @@ mod tests {
     fn builds_named_commands_as_the_complete_tree() {
         let whole = Cli::command();
         let lay_out = |family: Family, is_named: &dyn Fn(&str) -> bool| {
-            families::of(family).lay_out(Command::new(family.name()), is_named)
+            (families::of(family).lay_out)(Command::new(family.name()), is_named)
         };
         for family in Family::ALL {
             let expected = whole.find_subcommand(family.name()).unwrap();

@@ -1,7 +1,6 @@
 //! Interactive selection of a missing name. The choices are the completion candidates.
 
 use std::ffi::OsString;
-use std::time::Duration;
 
 use clap::CommandFactory as _;
 use clap::error::{ContextKind, ContextValue, ErrorKind};

@@ -1,12 +1,10 @@
 //! Preparation of a command line, before anything is sent.
 
-use std::path::{Path, PathBuf};
-
 use clap::{CommandFactory as _, ValueEnum as _};
 
 use super::flags;
 use crate::cli::{Cli, FamilyWord, Top};
-use crate::command::common::Common;
+use crate::command::common::{Common, Properties};
 use crate::command::fleet::common;
 use crate::command::fleet::robots::Robots;
 use crate::command::fleet::robots::check::Check;
@@ -14,15 +12,14 @@ use crate::command::fleet::teach::Teach;
 use armctl_frame::batch::{Batch, Rehearse};
 use armctl_frame::condition::Condition;
 use armctl_frame::face::family_command::{FamilyLine, ParsedCommand};
-use armctl_frame::failure::Failure;
 use armctl_frame::flags::Globals;
 use armctl_frame::gate::Gate;
 use armctl_frame::output::Format;
 use armctl_frame::output::jq::Filter;
 use armctl_frame::output::redraw::Redraw;
-use armctl_frame::run::{Repeat, Run, RunError};
+use armctl_frame::prelude::*;
+use armctl_frame::run::Repeat;
 use armctl_frame::script_line::Line;
-use armctl_frame::settings::duration;
 use armctl_frame::settings::inventory::{Inventory, Location, Options};
 use armctl_frame::settings::target::TargetArgument;
 use armctl_frame::settings::{Selection, Sessions, Sources};
@@ -84,7 +81,7 @@ pub struct PreparedCommand {
 impl PreparedCommand {
     /// Reads flags, environment and inventory once. `all` contains the global flags for all lines, if there are several
     /// lines.
-    pub fn new(globals: Globals, all: Option<&Globals>, task: Task, line: Option<Line>) -> Result<Self, Failure> {
+    pub fn new(globals: Globals, all: Option<&Globals>, task: Task, line: Option<Line>) -> Result<Self> {
         flags::check(&globals, &task)?;
         let globals = match all {
             // At the prompt of a robot, this command still lists the whole inventory.
@@ -101,7 +98,7 @@ impl PreparedCommand {
         let mut run = prepare(globals, need, line)?;
         match &task {
             Task::Family(own, _) => run.own = own.clone(),
-            Task::Common(common) if common.is_for_all() => {
+            Task::Common(common) if common.properties().is_for_all => {
                 run.sources.default_to_all();
                 run.sources.selection.every_simulator = true;
             }
@@ -128,7 +125,7 @@ impl PreparedCommand {
     }
 
     /// Refuses the command, before a connection is opened, if a robot is missing or if the gate rejects the command.
-    pub fn check_gate(&self) -> Result<(), Failure> {
+    pub fn check_gate(&self) -> Result<()> {
         match &self.task {
             Task::Family(_, command) => self.run.check_gate(&**command),
             Task::Common(Common::Status(overview)) => self.run.check_gate(overview),
@@ -138,37 +135,6 @@ impl PreparedCommand {
             Task::Common(Common::Position) => self.run.check_gate(&common::position()),
             Task::Common(Common::Stop) => self.run.check_gate(&common::stop()),
             Task::Common(_) => Ok(()),
-        }
-    }
-
-    /// Whether the command can run in a rehearsal: it reaches only the selected robots, and changes no file of this
-    /// computer except the files that it names.
-    pub fn can_rehearse(&self) -> bool {
-        match &self.task {
-            Task::Family(..) => true,
-            Task::Common(common) => matches!(
-                common,
-                Common::Status(_)
-                    | Common::Alarm(_)
-                    | Common::Io(_)
-                    | Common::Position
-                    | Common::Stop
-                    | Common::Wait(_)
-                    | Common::Backup(_)
-                    | Common::Restore(_)
-                    | Common::Diff(_)
-                    | Common::Decode(_)
-                    | Common::Explain(_)
-            ),
-        }
-    }
-
-    /// Returns the reason why the command is not possible in a command file: the command does not end, or its output is
-    /// not a result.
-    pub fn why_not_in_batch(&self) -> Option<&'static str> {
-        match &self.task {
-            Task::Common(common) => common.why_not_in_batch(),
-            Task::Family(..) => None,
         }
     }
 }
@@ -182,9 +148,19 @@ impl Task {
         }
     }
 
+    /// Properties of the command with its arguments.
+    pub fn properties(&self) -> Properties {
+        match self {
+            Self::Family(_, command) if command.driver().is_none() => {
+                Properties { can_rehearse: true, ..Properties::ALONE }
+            }
+            Self::Family(..) => Properties::ROBOTS,
+            Self::Common(common) => common.properties(),
+        }
+    }
+
     fn need(&self) -> Need {
         match self {
-            Self::Family(_, command) if command.driver().is_none() => Need::Nothing,
             Self::Common(Common::Robots(Robots::Discover(_))) => Need::Nothing,
             Self::Common(Common::Robots(robots)) if robots.is_about_file() => Need::Names,
             Self::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
@@ -192,8 +168,8 @@ impl Task {
             Self::Common(Common::Session(session)) if !session.opens() => Need::Names,
             // `explain` reads `alarms.toml`, which is in the folder of the inventory.
             Self::Common(Common::Explain(_)) => Need::Names,
-            Self::Common(common) if !common.is_about_robots() => Need::Nothing,
-            Self::Family(..) | Self::Common(_) => Need::Inventory,
+            task if task.properties().is_about_robots => Need::Inventory,
+            _ => Need::Nothing,
         }
     }
 }
@@ -213,7 +189,7 @@ pub enum Need {
 }
 
 /// Reads flags, environment and inventory.
-pub fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Failure> {
+pub fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run> {
     let screen = globals.screen().with_pager(!globals.no_pager && line.is_none());
     let filter = globals.jq.as_deref().map(Filter::new).transpose()?;
     let until = globals.until.as_deref().map(Condition::new).transpose()?;
@@ -246,7 +222,7 @@ pub fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, 
 
 /// Returns the selected robots and their settings. `among` is `true` if this process also runs other lines; its
 /// simulators then stay alive between lines.
-pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Failure> {
+pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources> {
     let mut selection = Selection {
         sim: globals.sim,
         target: globals.target,
@@ -302,7 +278,7 @@ fn names(text: &str) -> Result<Vec<String>, String> {
 
 /// Returns the format from `ARMCTL_OUTPUT`, if the line has no format option. Help and interactive commands ignore the
 /// variable.
-pub fn format_of_environment(cli: &Cli) -> Result<Option<Format>, Failure> {
+pub fn format_of_environment(cli: &Cli) -> Result<Option<Format>> {
     let asks = !cli.globals.says_format() && !matches!(cli.command, Top::Common(Common::Help(_) | Common::Top(_)));
     if asks { variable(OUTPUT, format) } else { Ok(None) }
 }
@@ -321,7 +297,7 @@ fn format(name: &str) -> Result<Format, String> {
 }
 
 /// Location of the inventory.
-fn location(config: Option<PathBuf>) -> Result<Location, Failure> {
+fn location(config: Option<PathBuf>) -> Result<Location> {
     Ok(Location::find(match config {
         Some(path) => Some(path),
         None => variable("ARMCTL_CONFIG", |path| Ok(path.into()))?,
@@ -330,7 +306,7 @@ fn location(config: Option<PathBuf>) -> Result<Location, Failure> {
 
 /// Returns the value of an environment variable. An empty variable counts as not set. An error contains the name of the
 /// variable.
-fn variable<T>(name: &str, parse: impl FnOnce(&str) -> Result<T, String>) -> Result<Option<T>, Failure> {
+fn variable<T>(name: &str, parse: impl FnOnce(&str) -> Result<T, String>) -> Result<Option<T>> {
     let Some(value) = std::env::var_os(name).filter(|value| !value.is_empty()) else { return Ok(None) };
     let wrong =
         |why: String| Failure::usage(format!("{name}: {why}")).hint(format!("correct the value, or unset {name}"));

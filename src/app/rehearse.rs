@@ -1,13 +1,7 @@
 //! `armctl rehearse`: runs commands on simulators of a backup, and reports what they changed.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
-use std::path::Path;
 use std::rc::Rc;
-use std::sync::Arc;
-
-use anyhow::Context as _;
-use serde_json::Value;
 
 use super::batch::{Plan, Results, read, refuse_repetition};
 use super::parser::Parser;
@@ -17,13 +11,11 @@ use crate::command::fleet::cell::{SavedRobot, inventory_text, robots_in};
 use crate::command::fleet::rehearsal::{ID, LineResult, RehearsalReport, RehearsedRobot, Snapshot};
 use crate::command::fleet::session::host;
 use armctl_frame::batch::{Batch, Rehearse};
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::flags::Globals;
 use armctl_frame::interrupt::catch_interrupts;
 use armctl_frame::output::Format;
-use armctl_frame::run::RunError;
+use armctl_frame::prelude::*;
 use armctl_frame::script_line::Origin;
-use armctl_frame::settings::duration;
 use armctl_frame::settings::rehearsal::{Rehearsal, Rehearsals};
 
 /// Runs the commands, and prints the report.
@@ -39,7 +31,7 @@ pub async fn run(globals: Globals, rehearse: Rehearse) -> Result<(), RunError> {
     catch_interrupts();
     let folder = tempfile::tempdir().context("a temporary folder")?;
     let inventory = folder.path().join("robots.toml");
-    let entries = saved.iter().map(|robot| robot.entry(&robot.simulator_url()?)).collect::<Result<_, Failure>>()?;
+    let entries = saved.iter().map(|robot| robot.entry(&robot.simulator_url()?)).collect::<Result<_>>()?;
     std::fs::write(&inventory, inventory_text(&rehearse.from, entries)?).context("a temporary folder")?;
     let records = |robot: &SavedRobot| (robot.name.clone(), Rehearsal::new(rehearse.speed));
     let records: Rehearsals = Arc::new(saved.iter().map(records).collect());
@@ -140,7 +132,7 @@ impl Rehearsed<'_> {
     }
 
     /// Saves all robots below `time`.
-    async fn snapshots(&self, plan: &Plan<'_>, time: &str) -> Result<Vec<Snapshot>, Failure> {
+    async fn snapshots(&self, plan: &Plan<'_>, time: &str) -> Result<Vec<Snapshot>> {
         let mut snapshots = Vec::new();
         for SavedRobot { name, family, .. } in self.saved {
             let path = self.folder.join(time).join(name);
@@ -159,7 +151,7 @@ impl Rehearsed<'_> {
                 Ok::<_, Failure>(values_of(&ask(plan, words.collect()).await?))
             };
             let mut values = BTreeMap::new();
-            for noun in families::of(*family).unsaved() {
+            for noun in families::of(*family).unsaved {
                 values.append(&mut list(&[family.name(), noun, "list", "--empty"]).await.map_err(named)?);
             }
             let signals = list(&["io", "list"]).await.unwrap_or_default();
@@ -170,7 +162,7 @@ impl Rehearsed<'_> {
 }
 
 /// Runs a command that is not part of the rehearsal. Returns its data.
-async fn ask(plan: &Plan<'_>, words: Vec<String>) -> Result<Value, Failure> {
+async fn ask(plan: &Plan<'_>, words: Vec<String>) -> Result<Value> {
     let origin = Origin { file: "rehearse".into(), line: 1 };
     let planned = plan.words(&mut Parser::default(), words, "rehearse", &origin)?;
     let outcome = plan.run_lines(vec![planned]).await;

@@ -11,9 +11,7 @@ mod prompt;
 mod terminal;
 
 use std::io::IsTerminal as _;
-use std::sync::Arc;
 
-use anyhow::Context as _;
 use tokio::io::{AsyncBufRead, AsyncBufReadExt as _, AsyncReadExt as _, BufReader};
 
 use self::assistant::Assistant;
@@ -36,7 +34,6 @@ use armctl_frame::prelude::*;
 use armctl_frame::run::begin_trace;
 use armctl_frame::script_line::Line;
 use armctl_frame::session_manager::SessionManager;
-use armctl_frame::settings::target::Family;
 
 /// Whether stdin is a terminal.
 pub fn can_type() -> bool {
@@ -80,7 +77,7 @@ enum Next {
 }
 
 impl Repl {
-    fn new(globals: Globals, mut prefix: Vec<String>) -> Result<Self, Failure> {
+    fn new(globals: Globals, mut prefix: Vec<String>) -> Result<Self> {
         let family = prefix.first().and_then(|family| family.parse::<Family>().ok());
         let sources = sources(globals.clone(), Need::Inventory, true)?;
         let has_no_selection = sources.selection.is_empty() && sources.inventory.default.is_none();
@@ -119,7 +116,7 @@ impl Repl {
         if let Some(robot) = &self.robot
             && !self.globals.dry_run
             && !matches!(
-                families::of(robot.family).driver().connection_effect(robot, ConnectMode::Control),
+                (families::driver(robot).connection_effect)(robot, ConnectMode::Control),
                 ConnectionEffect::Stops(_)
             )
         {
@@ -258,7 +255,7 @@ impl Repl {
 }
 
 /// Reads the next line of a script; `None` at the end of the script.
-async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option<String>, Failure> {
+async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option<String>> {
     /// Maximum length of a line. Input without line ends is not a script.
     const MAX_LINE_LEN: u64 = 1 << 20;
 

@@ -25,12 +25,12 @@ pub fn families_with(code: &str) -> Vec<Family> {
         let code = code.to_ascii_lowercase();
         code.strip_prefix("0x").unwrap_or(&code).trim_start_matches('0').to_owned()
     };
-    let knows = |face: &&&dyn Face| face.codes().iter().any(|(known, _)| bare(known) == bare(code));
-    let with: Vec<Family> = FAMILIES.iter().filter(knows).map(|face| face.family()).collect();
+    let knows = |face: &&&Face| (face.codes)().iter().any(|(known, _)| bare(known) == bare(code));
+    let with: Vec<Family> = FAMILIES.iter().filter(knows).map(|face| face.family).collect();
     if !with.is_empty() || !code.contains(|one: char| one.is_ascii_digit()) {
         return with;
     }
-    FAMILIES.iter().filter(|face| face.explains(code)).map(|face| face.family()).collect()
+    FAMILIES.iter().filter(|face| (face.explains)(code)).map(|face| face.family).collect()
 }
 
 /// Adds the family to `explain CODE`, if only one family has the code.

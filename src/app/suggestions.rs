@@ -3,7 +3,6 @@
 
 mod synonyms;
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -12,10 +11,8 @@ use clap::{Arg, Command};
 use super::spellings::families_with;
 use super::typed_line::TypedLine;
 use crate::command::example_lines::{self, is_dangerous};
-use armctl_controller::Risk;
-use armctl_controller::similar_word::nearest;
 use armctl_frame::failure::decimal_point;
-use armctl_frame::settings::target::Family;
+use armctl_frame::prelude::*;
 
 /// Maximum number of suggestions.
 const MAX_SUGGESTIONS: usize = 4;

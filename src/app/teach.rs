@@ -3,9 +3,6 @@
 use std::cell::RefCell;
 use std::ffi::OsString;
 use std::rc::Rc;
-use std::sync::Arc;
-
-use serde_json::Value;
 
 use super::batch::refuse_repetition;
 use super::parser::Parser;
@@ -38,7 +35,7 @@ pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
     // Messages about the link would damage the screen, so they are dropped. The commands report link errors.
     let (manager, thread) = host::start(|_| {})?;
     let lines = Lines { globals: line_globals(&globals), manager, robot: robot.clone(), parser: RefCell::default() };
-    let panel = families::of(robot.family).panel();
+    let panel = families::of(robot.family).panel;
     let outcome = match lines.line("teach").hold(&robot, globals.trace.as_deref(), &screen).await {
         Ok(()) => show(&screen, &robot, panel, &teach, &lines).await,
         Err(failure) => Err(failure),
@@ -48,7 +45,7 @@ pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
 }
 
 /// Selects the robot of the panel. There must be exactly one.
-fn select_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
+fn select_robot(globals: &Globals, teach: &Teach) -> Result<Robot> {
     let sources = sources(globals.clone(), Need::Inventory, true)?;
     if sources.selection.sim && teach.family.is_none() {
         return Err(
@@ -62,7 +59,7 @@ fn select_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
     }
 }
 
-fn check_globals(globals: &Globals, screen: &Screen) -> Result<(), Failure> {
+fn check_globals(globals: &Globals, screen: &Screen) -> Result<()> {
     let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("teach {what}")).hint(hint));
     if globals.dry_run {
         return wrong(
@@ -82,7 +79,7 @@ fn check_globals(globals: &Globals, screen: &Screen) -> Result<(), Failure> {
 /// Returns the intent for one confirmation. It covers all keys, and the effects of the link itself.
 fn intent(teach: &Teach, robot: &Robot) -> Intent {
     let intent = teach.intent();
-    match families::of(robot.family).driver().connection_effect(robot, ConnectMode::Control) {
+    match (families::driver(robot).connection_effect)(robot, ConnectMode::Control) {
         ConnectionEffect::Stops(entry) => Intent { text: format!("{}, and {entry}", intent.text), ..intent },
         ConnectionEffect::Harmless | ConnectionEffect::ThroughSession => intent,
     }
@@ -114,7 +111,7 @@ impl Lines {
 }
 
 impl CommandRunner for Lines {
-    async fn run(&self, words: &[String]) -> Result<Value, Failure> {
+    async fn run(&self, words: &[String]) -> Result<Value> {
         let line = self.line(&words.join(" "));
         let results = line.results.clone().unwrap_or_default();
         let family = self.robot.family.name().to_owned();

@@ -78,82 +78,117 @@ pub enum Common {
     Help(help::Help),
 }
 
-impl Common {
-    /// Whether the command reads or lists robots, and therefore needs the inventory.
-    pub fn is_about_robots(&self) -> bool {
-        match self {
-            #[cfg(feature = "plant")]
-            Self::Publish(_) => true,
-            Self::Setup(_)
-            | Self::Status(_)
-            | Self::Alarm(_)
-            | Self::Io(_)
-            | Self::Position
-            | Self::Stop
-            | Self::Wait(_)
-            | Self::Top(_)
-            | Self::Robots(_)
-            | Self::Names(_)
-            | Self::Session(_)
-            | Self::Record(_)
-            | Self::Report(_)
-            | Self::Restore(_) => true,
-            #[cfg(feature = "plant")]
-            Self::Serve(_) => true,
-            Self::Backup(backup) => backup.takes_robot(),
-            Self::Diff(diff) => diff.may_ask_robots(),
-            _ => false,
-        }
-    }
+/// Groups of global flags that a command uses. All commands also use the output flags.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent group of flags")]
+pub struct FlagGroups {
+    /// Flags that select robots.
+    pub robots: bool,
+    /// Flags for the link, for example the timeout.
+    pub link: bool,
+    /// `--watch` and the other flags for repetition.
+    pub repeat: bool,
+    /// `--yes` and `--dry-run`.
+    pub gate: bool,
+}
 
+impl FlagGroups {
+    const ALL: Self = Self { robots: true, link: true, repeat: true, gate: true };
+    const NONE: Self = Self { robots: false, link: false, repeat: false, gate: false };
+}
+
+/// Properties of a command that decide how it is prepared, and where it can run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Properties {
+    /// Global flags that have an effect.
+    pub flags: FlagGroups,
+    /// Whether the command reads or lists robots, and therefore needs the inventory.
+    pub is_about_robots: bool,
     /// Whether the command applies to all robots of the inventory if none is selected, and to the simulators of all
     /// families.
-    pub fn is_for_all(&self) -> bool {
-        match self {
-            Self::Status(_) | Self::Io(_) | Self::Position | Self::Top(_) => true,
-            Self::Alarm(alarm) => alarm.reads(),
-            #[cfg(feature = "plant")]
-            Self::Serve(_) | Self::Publish(_) => true,
-            _ => false,
-        }
-    }
-
+    pub is_for_all: bool,
+    /// Whether the command can run in a rehearsal: it reaches only the selected robots, and changes no file of this
+    /// computer except the files that it names.
+    pub can_rehearse: bool,
     /// Reason why the command cannot be a line of a batch file: it would not end, or it prints text that is not a
     /// result.
-    pub fn why_not_in_batch(&self) -> Option<&'static str> {
+    pub why_not_in_batch: Option<&'static str>,
+}
+
+impl Properties {
+    /// A command that runs on the selected robots.
+    pub const ROBOTS: Self = Self {
+        flags: FlagGroups::ALL,
+        is_about_robots: true,
+        is_for_all: false,
+        can_rehearse: true,
+        why_not_in_batch: None,
+    };
+    /// A command without a robot.
+    pub const ALONE: Self =
+        Self { flags: FlagGroups::NONE, is_about_robots: false, can_rehearse: false, ..Self::ROBOTS };
+
+    const fn not_in_batch(self, why: &'static str) -> Self {
+        Self { why_not_in_batch: Some(why), ..self }
+    }
+
+    const fn not_rehearsed(self) -> Self {
+        Self { can_rehearse: false, ..self }
+    }
+}
+
+impl Common {
+    /// Properties of the command with its arguments.
+    pub fn properties(&self) -> Properties {
+        const ALL: FlagGroups = FlagGroups::ALL;
+        const NONE: FlagGroups = FlagGroups::NONE;
+        const ROBOTS: Properties = Properties::ROBOTS;
+        const ALONE: Properties = Properties::ALONE;
+        const OF_ALL: Properties = Properties { is_for_all: true, ..ROBOTS };
+        const LISTED: Properties = Properties { is_about_robots: true, ..ALONE };
+        // A command that shows the settings of a link, or checks a connection, uses the link flags.
+        const LINK: FlagGroups = FlagGroups { link: true, ..NONE };
+        let flags = |flags, properties| Properties { flags, ..properties };
         match self {
-            Self::Session(session) if session.stays() => {
-                Some("it keeps a connection open until you end it; add --background")
+            Self::Status(_) | Self::Io(_) | Self::Position => OF_ALL,
+            Self::Alarm(alarm) => Properties { is_for_all: alarm.reads(), ..ROBOTS },
+            Self::Stop | Self::Wait(_) | Self::Restore(_) => ROBOTS,
+            Self::Top(_) => OF_ALL.not_rehearsed().not_in_batch("it is a full-screen display"),
+            #[cfg(feature = "plant")]
+            Self::Publish(_) => OF_ALL.not_rehearsed().not_in_batch("it publishes until you end it"),
+            #[cfg(feature = "plant")]
+            Self::Serve(_) => flags(FlagGroups { gate: false, ..ALL }, OF_ALL)
+                .not_rehearsed()
+                .not_in_batch("it serves until you end it"),
+            Self::Record(_) => flags(FlagGroups { gate: false, ..ALL }, ROBOTS)
+                .not_rehearsed()
+                .not_in_batch("it records until you end it"),
+            Self::Report(_) => flags(FlagGroups { repeat: false, ..ALL }, ROBOTS).not_rehearsed(),
+            Self::Backup(backup) if backup.takes_robot() => ROBOTS,
+            Self::Diff(diff) if diff.may_ask_robots() => ROBOTS,
+            Self::Backup(_) | Self::Diff(_) | Self::Decode(_) => Properties { can_rehearse: true, ..ALONE },
+            Self::Explain(_) => Properties { flags: FlagGroups { robots: true, ..LINK }, can_rehearse: true, ..ALONE },
+            Self::Setup(_) => {
+                flags(LINK, LISTED).not_in_batch("it asks questions at the terminal; use `robots add` instead")
             }
-            Self::Sim(sim) if sim.is_list() => None,
-            Self::Sim(_) => Some("it serves until you end it"),
-            #[cfg(feature = "plant")]
-            Self::Serve(_) => Some("it serves until you end it"),
-            Self::Top(_) => Some("it is a full-screen display"),
-            Self::Record(_) => Some("it records until you end it"),
-            #[cfg(feature = "plant")]
-            Self::Publish(_) => Some("it publishes until you end it"),
-            Self::Setup(_) => Some("it asks questions at the terminal; use `robots add` instead"),
-            Self::Robots(robots::Robots::Edit) => Some("it opens an editor; use `robots set` instead"),
+            Self::Robots(robots::Robots::Check(_)) => flags(ALL, LISTED),
+            Self::Robots(robots::Robots::List) | Self::Names(_) => flags(FlagGroups { robots: true, ..NONE }, LISTED),
+            Self::Robots(robots::Robots::Discover(_)) => flags(FlagGroups { gate: true, ..LINK }, LISTED),
+            Self::Robots(robots::Robots::Show(_)) => flags(LINK, LISTED),
+            Self::Robots(robots::Robots::Edit) => LISTED.not_in_batch("it opens an editor; use `robots set` instead"),
+            Self::Robots(_) => LISTED,
+            Self::Session(session) => Properties {
+                flags: FlagGroups { repeat: false, ..ALL },
+                why_not_in_batch: session
+                    .stays()
+                    .then_some("it keeps a connection open until you end it; add --background"),
+                ..LISTED
+            },
+            Self::Sim(sim) if !sim.is_list() => ALONE.not_in_batch("it serves until you end it"),
+            Self::Sim(_) | Self::Wireshark(_) => ALONE,
             Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => {
-                Some("it prints a text, not a result")
+                ALONE.not_in_batch("it prints a text, not a result")
             }
-            Self::Status(_)
-            | Self::Alarm(_)
-            | Self::Io(_)
-            | Self::Position
-            | Self::Stop
-            | Self::Wait(_)
-            | Self::Robots(_)
-            | Self::Names(_)
-            | Self::Session(_)
-            | Self::Decode(_)
-            | Self::Explain(_)
-            | Self::Backup(_)
-            | Self::Restore(_)
-            | Self::Diff(_)
-            | Self::Report(_)
-            | Self::Wireshark(_) => None,
         }
     }
 

@@ -3,24 +3,30 @@
 use clap::ArgMatches;
 use clap::error::ErrorKind;
 
+use armctl_frame::Driver;
 use armctl_frame::face::Face;
-use armctl_frame::face::registration::Registered;
+use armctl_frame::settings::Robot;
 use armctl_frame::settings::target::Family;
 use armctl_toyo::link::Toyo;
 use armctl_yerc::link::Yerc;
 use armctl_yrcx::link::Yrcx;
 
 /// All families, in the order of the help texts.
-pub static FAMILIES: [&dyn Face; 3] = [&Registered::<Yerc>::FACE, &Registered::<Yrcx>::FACE, &Registered::<Toyo>::FACE];
+pub static FAMILIES: [&Face; 3] = [&Face::of::<Yerc>(), &Face::of::<Yrcx>(), &Face::of::<Toyo>()];
 
 /// Returns the family with this name.
 ///
 /// # Panics
 ///
 /// If the family is missing in the list above, which a test excludes.
-pub fn of(family: Family) -> &'static dyn Face {
-    let face = FAMILIES.iter().find(|face| face.family() == family);
-    *face.expect("each family has a line; a test holds that")
+pub fn of(family: Family) -> &'static Face {
+    let face = FAMILIES.iter().find(|face| face.family == family);
+    face.expect("each family has a line; a test holds that")
+}
+
+/// Returns the driver of a robot's family.
+pub fn driver(robot: &Robot) -> &'static Driver {
+    of(robot.family).driver
 }
 
 /// Takes the family name from the parsed words. Returns the family and the arguments after its name.
@@ -43,7 +49,7 @@ mod tests {
 
     #[test]
     fn lists_every_family_once() {
-        assert_eq!(FAMILIES.map(<dyn Face>::family), Family::ALL);
+        assert_eq!(FAMILIES.map(|face| face.family), Family::ALL);
     }
 
     /// Messages of each family in a capture, and packets without a message.

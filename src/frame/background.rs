@@ -1,21 +1,13 @@
 //! Sessions in a background process.
 
 use std::ffi::OsString;
-use std::path::Path;
 
-use anyhow::Context as _;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use tokio::task::spawn_blocking;
 
 use super::interrupt::interruptible;
-use super::report::Report;
 use super::session_client::{folder_failure, session_key};
-use crate::failure::Failure;
-use crate::output::Screen;
-use crate::output::view::View;
-use crate::settings::Robot;
-use armctl_files as files;
+use crate::prelude::basics::*;
 use armctl_transport::session::location::SessionFolder;
 use armctl_transport::session::{detach, process, start_file, terminate};
 
@@ -61,7 +53,7 @@ pub enum Start {
 }
 
 /// Reports the start of this background process to the process that started it.
-pub fn report_start(screen: &Screen, start: &Start) -> Result<(), Failure> {
+pub fn report_start(screen: &Screen, start: &Start) -> Result<()> {
     let Some(path) = start_file() else { return screen.json(start) };
     let line = serde_json::to_vec(start).context("internal error")?;
     files::replace(&path, &line).with_context(|| path.display().to_string())?;
@@ -76,7 +68,7 @@ impl Report for Opened {
 }
 
 /// Opens a background session for a robot. Its inventory entry has `hold = true`.
-pub async fn open_session(robot: &Robot, inventory: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
+pub async fn open_session(robot: &Robot, inventory: Option<&Path>, screen: &Screen) -> Result<()> {
     let mut words: Vec<OsString> = Vec::new();
     if let Some(path) = inventory {
         words.extend(["--config".into(), path.into()]);
@@ -108,7 +100,7 @@ pub fn close_inherited_files() {
 
 /// Starts this program in the background with these arguments, and waits until the background process has opened its
 /// link.
-pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Result<Opened, Failure> {
+pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Result<Opened> {
     let folder = SessionFolder::create().map_err(|error| folder_failure(&error))?;
     let log = folder.location(&session_key(robot)).log();
     let mut child = detach(words, &log).context("cannot start armctl in the background")?;

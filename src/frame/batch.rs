@@ -1,13 +1,9 @@
 //! Arguments of `armctl batch` and `armctl rehearse`; `crate::app` runs them.
 
-use std::path::PathBuf;
-use std::time::Duration;
+use clap::ValueHint;
 
-use clap::{Args, ValueHint};
-
-use crate::settings::duration;
+use crate::prelude::basics::*;
 use armctl_controller::simulator::run_options::Speed;
-use armctl_controller::user_input;
 
 /// Arguments of `batch`.
 #[derive(Debug, Args)]

@@ -1,11 +1,11 @@
 //! Command interface: arguments, risk, execution.
 
-use futures_util::future::{LocalBoxFuture, ready};
-use futures_util::{FutureExt as _, TryFutureExt as _};
+use futures_util::TryFutureExt as _;
+use futures_util::future::ready;
 
 use super::confirmation::Confirmer;
 use super::connection::{self, Access, ConnectMode, Connection, ConnectionEffect, Driver, Family};
-use super::report::{Outcome, Report, sheet_of};
+use super::report::{Outcome, sheet_of};
 use crate::gate::Intent;
 use crate::output::csv::Sheet;
 use crate::output::envelope::Envelope;
@@ -44,7 +44,7 @@ pub struct AnyContext<'a> {
 
 impl<'a> AnyContext<'a> {
     /// Converts to the context of one family. The connection must belong to this family.
-    pub fn of<F: Family>(self) -> Result<Context<'a, F>, Failure> {
+    pub fn of<F: Family>(self) -> Result<Context<'a, F>> {
         let Self { robot, connection, screen, several, confirmer } = self;
         Ok(Context { robot, link: connection::link::<F>(connection)?, screen, several, confirmer })
     }
@@ -67,6 +67,10 @@ pub trait Command {
     const CONFIRMATION: Confirmation = Confirmation::Question;
     /// Connection that the command needs.
     const CONNECT_MODE: ConnectMode = ConnectMode::Control;
+    /// Whether the command is a jog. A jog is stopped even with `--on-interrupt leave`.
+    const JOGS: bool = false;
+    /// Whether the command reads or writes files of this machine, even if the user names no file.
+    const USES_FILES: bool = false;
 
     /// Risk with these arguments. The default is [`RISK`](Self::RISK).
     fn risk(&self) -> Risk {
@@ -98,18 +102,8 @@ pub trait Command {
         false
     }
 
-    /// Whether the command is a jog. A jog is stopped even with `--on-interrupt leave`.
-    fn jogs(&self) -> bool {
-        false
-    }
-
     /// Whether the command runs again and again until it is stopped, and each run waits for an event.
     fn is_endless(&self) -> bool {
-        false
-    }
-
-    /// Whether the command reads or writes files of this machine, even if the user names no file.
-    fn uses_files(&self) -> bool {
         false
     }
 
@@ -119,7 +113,7 @@ pub trait Command {
     }
 
     /// Runs the command without a robot, if it needs none.
-    fn run_alone(&self) -> Result<Self::Report, Failure> {
+    fn run_alone(&self) -> Result<Self::Report> {
         Err(Failure::local("internal error: this command needs a robot"))
     }
 
@@ -134,14 +128,14 @@ pub trait Command {
     }
 
     /// Outcome for a robot that did not answer before the end of `--for`.
-    fn without_answer(&self, _robot: &Robot, failure: Failure) -> Result<Self::Report, Failure> {
+    fn without_answer(&self, _robot: &Robot, failure: Failure) -> Result<Self::Report> {
         Err(failure)
     }
 
     /// Executes the command. In a dry run, requests that change something are recorded and count as successful. In a
     /// dry run, a read ends with the failure [`unknown`](super::dry_run::unknown). Unless the command handles this
     /// failure, the requests after the read are not planned.
-    async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
+    async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report>;
 }
 
 /// [`Command`] without its associated types, for the common run loop.
@@ -159,7 +153,7 @@ pub trait AnyCommand {
     fn moves_until_stopped(&self) -> bool {
         false
     }
-    /// See [`Command::jogs`].
+    /// See [`Command::JOGS`].
     fn jogs(&self) -> bool {
         false
     }
@@ -167,12 +161,12 @@ pub trait AnyCommand {
     fn is_endless(&self) -> bool {
         false
     }
-    /// See [`Command::uses_files`].
+    /// See [`Command::USES_FILES`].
     fn uses_files(&self) -> bool {
         false
     }
     /// Driver for the connections of the command; `None` if it needs no robot.
-    fn driver(&self) -> Option<&'static dyn Driver> {
+    fn driver(&self) -> Option<&'static Driver> {
         None
     }
     /// See [`Command::connect_mode`].
@@ -207,24 +201,19 @@ impl dyn AnyCommand + '_ {
 
     /// Family of the command; `None` for commands of all families or without a robot.
     pub fn family(&self) -> Option<target::Family> {
-        self.driver()?.family()
+        self.driver()?.family
     }
 
     /// Effect that opening a connection for the command has on a robot.
     pub fn connection_effect(&self, robot: &Robot) -> ConnectionEffect {
-        self.driver()
-            .map_or(ConnectionEffect::Harmless, |driver| driver.connection_effect(robot, self.connect_mode(robot)))
+        let effect = |driver: &Driver| (driver.connection_effect)(robot, self.connect_mode(robot));
+        self.driver().map_or(ConnectionEffect::Harmless, effect)
     }
 
     /// Connects to a robot.
-    pub async fn connect(
-        &self,
-        robot: &Robot,
-        access: Access,
-        screen: &Screen,
-    ) -> Result<Box<dyn Connection>, Failure> {
+    pub async fn connect(&self, robot: &Robot, access: Access, screen: &Screen) -> Result<Box<dyn Connection>> {
         let driver = self.driver().ok_or_else(|| Failure::local("internal error: this command needs no robot"))?;
-        driver.connect(robot, access, screen).await
+        (driver.connect)(robot, access, screen).await
     }
 }
 
@@ -247,7 +236,7 @@ impl<C: Command> AnyCommand for C {
     }
 
     fn jogs(&self) -> bool {
-        Command::jogs(self)
+        C::JOGS
     }
 
     fn is_endless(&self) -> bool {
@@ -255,7 +244,7 @@ impl<C: Command> AnyCommand for C {
     }
 
     fn uses_files(&self) -> bool {
-        Command::uses_files(self)
+        C::USES_FILES
     }
 
     fn without_robot(&self, _screen: &Screen) -> Option<Outcome> {
@@ -263,7 +252,7 @@ impl<C: Command> AnyCommand for C {
         (!Command::takes_robot(self)).then(alone)
     }
 
-    fn driver(&self) -> Option<&'static dyn Driver> {
+    fn driver(&self) -> Option<&'static Driver> {
         Command::takes_robot(self).then(connection::driver::<C::Family>)
     }
 

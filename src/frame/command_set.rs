@@ -1,10 +1,7 @@
 //! Mapping of commands to the command line: command sets, nested sets, and commands without a robot.
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-
 use super::command::{AnyCommand, AnyContext, Command};
-use super::report::{Outcome, Report, SchemaEntry};
+use super::report::{Outcome, SchemaEntry};
 use crate::gate::Intent;
 use crate::prelude::basics::*;
 
@@ -16,7 +13,7 @@ pub trait OfflineCommand {
     const ID: &'static str;
 
     /// Executes the command.
-    fn run(&self, screen: &Screen) -> Result<Self::Report, Failure>;
+    fn run(&self, screen: &Screen) -> Result<Self::Report>;
 }
 
 /// An [`OfflineCommand`] as a member of a set of robot commands.

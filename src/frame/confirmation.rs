@@ -7,7 +7,7 @@ use crate::gate::{Gate, Grant, Intent, not_confirmed};
 use crate::prelude::basics::*;
 
 /// Authorizes a command for `robot` before anything is sent. Asks the user if the risk requires it.
-pub async fn confirm_intent(gate: Gate, screen: &Screen, robot: &Robot, intent: &Intent) -> Result<(), Failure> {
+pub async fn confirm_intent(gate: Gate, screen: &Screen, robot: &Robot, intent: &Intent) -> Result<()> {
     let asks = gate.must_ask(screen, robot, intent)?;
     if let Some(rehearsal) = &robot.rehearsal {
         let is_known = intent.confirmation != Confirmation::WhenKnown;
@@ -56,7 +56,7 @@ impl<'a> Confirmer<'a> {
 
     /// Confirms `change`. The command must not have changed the controller before this call. A change that overwrites
     /// no user data needs no question.
-    pub async fn confirm(&self, change: &Change) -> Result<(), Failure> {
+    pub async fn confirm(&self, change: &Change) -> Result<()> {
         let risk = self.granted;
         let is_open = !change.is_empty() && risk >= Risk::Destroy && self.grant.get() < risk;
         if let Some(rehearsal) = self.robot.rehearsal.as_ref().filter(|_| is_open && !self.gate.dry_run) {
@@ -85,13 +85,7 @@ enum Question {
 static QUESTION_LOCK: Mutex<()> = Mutex::new(());
 
 /// Asks in a separate thread, so that Ctrl-C is handled. `otherwise` describes the state after the answer `no`.
-async fn ask(
-    screen: &Screen,
-    robot: &Robot,
-    lines: Vec<String>,
-    question: Question,
-    otherwise: &str,
-) -> Result<(), Failure> {
+async fn ask(screen: &Screen, robot: &Robot, lines: Vec<String>, question: Question, otherwise: &str) -> Result<()> {
     // From now on, Ctrl-C (also at the question) ends the command with a message and an exit code. It does not kill the
     // process.
     catch_interrupts();

@@ -1,13 +1,7 @@
 //! Connections to robots: what a command may do with a link, and the family-independent interface for the run loop.
 
 use std::any::Any;
-use std::fmt;
 use std::marker::PhantomData;
-use std::path::PathBuf;
-use std::sync::Arc;
-
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 
 use super::dry_run::Plan;
 use super::session_manager::OwnSession;
@@ -135,10 +129,10 @@ pub trait Family: Sized + 'static {
     const STOP: &'static [&'static str];
 
     /// Connects to the robot. A dry run opens no connection.
-    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Self::Link, Failure>;
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Self::Link>;
 
     /// Stops motion that this link started. Returns the result as a text, such as "the robot was stopped: HOLD is on".
-    async fn halt(link: &mut Self::Link) -> Result<String, Failure>;
+    async fn halt(link: &mut Self::Link) -> Result<String>;
 
     /// Whether the motion of this link is stopped even with `--on-interrupt leave`.
     fn needs_halt(_link: &Self::Link) -> bool {
@@ -149,7 +143,7 @@ pub trait Family: Sized + 'static {
     fn planned(link: &mut Self::Link) -> Plan;
 
     /// Checks, before a report is made, that all answers belong to the requests.
-    async fn settle(_link: &mut Self::Link) -> Result<(), Failure> {
+    async fn settle(_link: &mut Self::Link) -> Result<()> {
         Ok(())
     }
 
@@ -164,151 +158,118 @@ pub trait Family: Sized + 'static {
     }
 
     /// All addresses of a robot, resolved from its network; empty if robots of this family have only one address.
-    fn addresses(_robot: &Robot) -> Result<Vec<target::Address>, Failure> {
+    fn addresses(_robot: &Robot) -> Result<Vec<target::Address>> {
         Ok(Vec::new())
     }
 
     /// Closes the connection. With `-v`, prints statistics.
-    async fn close(link: Self::Link, screen: &Screen) -> Result<(), Failure>;
+    async fn close(link: Self::Link, screen: &Screen) -> Result<()>;
 }
 
 /// A connection to one robot of any family: [`Family`] without its associated types.
 pub trait Connection {
     /// See [`Family::halt`].
-    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>>;
+    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String>>;
     /// See [`Family::needs_halt`].
-    fn needs_halt(&self) -> bool;
+    fn needs_halt(&mut self) -> bool;
     /// See [`Family::planned`].
     fn planned(&mut self) -> Plan;
     /// See [`Family::settle`].
-    fn settle(&mut self) -> LocalBoxFuture<'_, Result<(), Failure>>;
+    fn settle(&mut self) -> LocalBoxFuture<'_, Result<()>>;
     /// See [`Family::close`].
-    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>>;
+    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<()>>;
     /// The link, whose type is [`Family::Link`].
     fn as_any(&mut self) -> &mut dyn Any;
 }
 
 /// Driver for the robots of a family: [`Family`] without its associated types.
-pub trait Driver: Sync {
+pub struct Driver {
     /// See [`Family::FAMILY`].
-    fn family(&self) -> Option<target::Family>;
+    pub family: Option<target::Family>,
     /// See [`Family::STOP`].
-    fn stop(&self) -> &'static [&'static str];
+    pub stop: &'static [&'static str],
     /// See [`Family::connection_effect`].
-    fn connection_effect(&self, robot: &Robot, mode: ConnectMode) -> ConnectionEffect;
+    pub connection_effect: fn(&Robot, ConnectMode) -> ConnectionEffect,
     /// See [`Family::takes_one_client`].
-    fn takes_one_client(&self, robot: &Robot) -> bool;
+    pub takes_one_client: fn(&Robot) -> bool,
     /// See [`Family::addresses`].
-    fn addresses(&self, robot: &Robot) -> Result<Vec<target::Address>, Failure>;
+    pub addresses: fn(&Robot) -> Result<Vec<target::Address>>,
     /// See [`Family::connect`].
-    fn connect<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>>;
+    pub connect: for<'a> fn(&'a Robot, Access, &'a Screen) -> Connecting<'a>,
 }
+
+/// Connection that is being opened.
+pub type Connecting<'a> = LocalBoxFuture<'a, Result<Box<dyn Connection>>>;
 
 /// The driver of a family.
-pub fn driver<F: Family>() -> &'static dyn Driver {
-    &Driving::<F>(PhantomData)
+pub const fn driver<F: Family>() -> &'static Driver {
+    &Driving::<F>::DRIVER
 }
 
-struct Driving<F>(PhantomData<fn() -> F>);
+struct Driving<F>(PhantomData<F>);
 
-impl<F: Family> Driver for Driving<F> {
-    fn family(&self) -> Option<target::Family> {
-        F::FAMILY
-    }
-
-    fn stop(&self) -> &'static [&'static str] {
-        F::STOP
-    }
-
-    fn connection_effect(&self, robot: &Robot, mode: ConnectMode) -> ConnectionEffect {
-        F::connection_effect(robot, mode)
-    }
-
-    fn takes_one_client(&self, robot: &Robot) -> bool {
-        F::takes_one_client(robot)
-    }
-
-    fn addresses(&self, robot: &Robot) -> Result<Vec<target::Address>, Failure> {
-        F::addresses(robot)
-    }
-
-    fn connect<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>> {
-        let connected = F::connect(robot, access, screen);
-        async move { Ok(Box::new(Connected::<F>(connected.await?)) as Box<dyn Connection>) }.boxed_local()
-    }
+impl<F: Family> Driving<F> {
+    const DRIVER: Driver = Driver {
+        family: F::FAMILY,
+        stop: F::STOP,
+        connection_effect: F::connection_effect,
+        takes_one_client: F::takes_one_client,
+        addresses: F::addresses,
+        connect: |robot, access, screen| {
+            let connected = F::connect(robot, access, screen);
+            async move { Ok(Box::new(Linked::<F>::Owned(connected.await?)) as Box<dyn Connection>) }.boxed_local()
+        },
+    };
 }
 
 /// The link of a family, from a connection. A connection of another family is an internal error.
-pub fn link<F: Family>(connection: &mut dyn Connection) -> Result<&mut F::Link, Failure> {
+pub fn link<F: Family>(connection: &mut dyn Connection) -> Result<&mut F::Link> {
     let link = connection.as_any().downcast_mut();
     link.ok_or_else(|| Failure::local("internal error: this connection belongs to another family"))
 }
 
-/// Link of a family, borrowed as a [`Connection`] for a command that runs on this link.
-pub struct Borrowed<'a, F: Family>(pub &'a mut F::Link);
+/// Link of a family as a [`Connection`].
+pub enum Linked<'a, F: Family> {
+    /// The connection owns the link.
+    Owned(F::Link),
+    /// The link is borrowed for a command. Its owner closes it.
+    Borrowed(&'a mut F::Link),
+}
 
-impl<F: Family> Connection for Borrowed<'_, F> {
-    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>> {
-        F::halt(self.0).boxed_local()
-    }
-
-    fn needs_halt(&self) -> bool {
-        F::needs_halt(self.0)
-    }
-
-    fn planned(&mut self) -> Plan {
-        F::planned(self.0)
-    }
-
-    fn settle(&mut self) -> LocalBoxFuture<'_, Result<(), Failure>> {
-        F::settle(self.0).boxed_local()
-    }
-
-    /// The owner of the link closes it.
-    fn close(self: Box<Self>, _screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
-        async { Ok(()) }.boxed_local()
-    }
-
-    fn as_any(&mut self) -> &mut dyn Any {
-        self.0
+impl<F: Family> Linked<'_, F> {
+    fn link(&mut self) -> &mut F::Link {
+        match self {
+            Self::Owned(link) => link,
+            Self::Borrowed(link) => link,
+        }
     }
 }
 
-/// Owned link of a family as a [`Connection`].
-struct Connected<F: Family>(F::Link);
-
-impl<F: Family> Connection for Connected<F> {
-    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>> {
-        F::halt(&mut self.0).boxed_local()
+impl<F: Family> Connection for Linked<'_, F> {
+    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String>> {
+        F::halt(self.link()).boxed_local()
     }
 
-    fn needs_halt(&self) -> bool {
-        F::needs_halt(&self.0)
+    fn needs_halt(&mut self) -> bool {
+        F::needs_halt(self.link())
     }
 
     fn planned(&mut self) -> Plan {
-        F::planned(&mut self.0)
+        F::planned(self.link())
     }
 
-    fn settle(&mut self) -> LocalBoxFuture<'_, Result<(), Failure>> {
-        F::settle(&mut self.0).boxed_local()
+    fn settle(&mut self) -> LocalBoxFuture<'_, Result<()>> {
+        F::settle(self.link()).boxed_local()
     }
 
-    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
-        F::close(self.0, screen).boxed_local()
+    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<()>> {
+        match *self {
+            Self::Owned(link) => F::close(link, screen).boxed_local(),
+            Self::Borrowed(_) => async { Ok(()) }.boxed_local(),
+        }
     }
 
     fn as_any(&mut self) -> &mut dyn Any {
-        &mut self.0
+        self.link()
     }
 }

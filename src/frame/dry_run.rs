@@ -1,8 +1,5 @@
 //! Dry run: frames are recorded instead of sent.
 
-use serde_json::Value;
-
-use super::report::Report;
 use crate::prelude::basics::*;
 pub use armctl_client::{Plan, Reason};
 
@@ -35,11 +32,11 @@ pub fn is_end(failure: &Failure) -> bool {
 /// Answers that may be missing, for a command that can continue without them.
 pub trait Known<T> {
     /// Returns the answer; `None` in a dry run.
-    fn known(self) -> Result<Option<T>, Failure>;
+    fn known(self) -> Result<Option<T>>;
 }
 
-impl<T> Known<T> for Result<T, Failure> {
-    fn known(self) -> Result<Option<T>, Failure> {
+impl<T> Known<T> for Result<T> {
+    fn known(self) -> Result<Option<T>> {
         match self {
             Err(failure) if failure.kind == Kind::DryRun => Ok(None),
             answered => answered.map(Some),
@@ -151,7 +148,6 @@ impl DryRun {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
 

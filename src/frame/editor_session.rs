@@ -1,15 +1,11 @@
 //! Text that a user edits between a read from a controller and the write back to it. The text is always in a file. The
 //! file is kept until the text is on the controller.
 
-use std::path::{Path, PathBuf};
-
-use anyhow::Context as _;
-
 use super::interrupt::catch_interrupts;
 use super::local_names::state_folder;
-use crate::failure::{Failure, plain};
-use crate::output::{Screen, editor};
-use armctl_files as files;
+use crate::failure::plain;
+use crate::output::editor;
+use crate::prelude::basics::*;
 
 /// Environment variables with the name of the editor, in the order of priority.
 const VARIABLES: [&str; 2] = ["VISUAL", "EDITOR"];
@@ -30,7 +26,7 @@ pub struct EditedText {
 
 impl EditedText {
     /// Opens the editor for a text in a file whose name ends in `name`.
-    pub fn new(name: &str, text: &[u8], screen: Screen) -> Result<Self, Failure> {
+    pub fn new(name: &str, text: &[u8], screen: Screen) -> Result<Self> {
         let folder = state_folder().map_or_else(std::env::temp_dir, |folder| folder.join("edited"));
         let place = || folder.display().to_string();
         std::fs::create_dir_all(&folder).with_context(place)?;
@@ -57,17 +53,17 @@ impl EditedText {
     }
 
     /// Current text.
-    pub fn text(&self) -> Result<Vec<u8>, Failure> {
+    pub fn text(&self) -> Result<Vec<u8>> {
         files::read(&self.path, SIZE_LIMIT).map_err(|error| Failure::io(self.path.display(), &error))
     }
 
     /// Whether the user changed the text.
-    pub fn is_changed(&self) -> Result<bool, Failure> {
+    pub fn is_changed(&self) -> Result<bool> {
         Ok(self.text()? != self.original)
     }
 
     /// Replaces the text.
-    pub fn replace(&self, text: &[u8]) -> Result<(), Failure> {
+    pub fn replace(&self, text: &[u8]) -> Result<()> {
         Ok(files::replace(&self.path, text).with_context(|| self.path.display().to_string())?)
     }
 
@@ -100,7 +96,7 @@ impl Drop for EditedText {
 }
 
 /// Runs the editor of the user and waits until the user closes it.
-pub fn open_editor(path: &Path) -> Result<(), Failure> {
+pub fn open_editor(path: &Path) -> Result<()> {
     let named = VARIABLES.iter().find_map(|name| std::env::var(name).ok().filter(|line| !line.trim().is_empty()));
     let line = named.unwrap_or_else(|| DEFAULT_EDITOR.to_owned());
     let hint = || format!("set {} to the editor of your choice", VARIABLES.join(" or "));

@@ -73,6 +73,9 @@ pub fn exit_process(kind: Kind) -> ! {
     std::process::exit(kind.exit().into())
 }
 
+/// Result of work that fails with a [`Failure`], unless another error is named.
+pub type Result<T, E = Failure> = std::result::Result<T, E>;
+
 /// Failure of a command, with a message and an optional hint.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Failure {

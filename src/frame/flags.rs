@@ -1,14 +1,9 @@
 //! Flags of every command.
 
-use std::path::PathBuf;
-use std::time::Duration;
-
-use clap::Args;
-
 use crate::ValueKind;
 use crate::gate::OnInterrupt;
-use crate::output::{ColorChoice, Format, Screen};
-use crate::settings::duration;
+use crate::output::{ColorChoice, Format};
+use crate::prelude::basics::*;
 use crate::settings::target::TargetArgument;
 use armctl_controller::text::Encoding;
 

@@ -71,7 +71,7 @@ pub struct ItemOutcome<T> {
 
 impl<T> ItemOutcome<T> {
     /// Result of a requested item.
-    pub fn new(asked: impl Into<String>, outcome: Result<T, Failure>) -> Self {
+    pub fn new(asked: impl Into<String>, outcome: Result<T>) -> Self {
         match outcome {
             Ok(data) => Self { ok: true, data: Some(data), error: None },
             Err(failure) => Self { ok: false, data: None, error: Some(ItemError::new(asked, failure)) },
@@ -137,7 +137,7 @@ pub fn verdict<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>
 
 /// Fails if all items failed for the same reason. In that case there is no report. If the reasons differ, the report
 /// lists them.
-pub fn all_failed<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>) -> Result<(), Failure> {
+pub fn all_failed<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>) -> Result<()> {
     let errors: Vec<&ItemError> = errors.into_iter().collect();
     let reason = |error: &ItemError| (error.failure.kind, error.failure.code.clone());
     let is_one = errors.windows(2).all(|pair| reason(pair[0]) == reason(pair[1]));
@@ -149,7 +149,6 @@ pub fn all_failed<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemErr
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
 

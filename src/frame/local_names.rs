@@ -4,16 +4,14 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::io::{BufWriter, ErrorKind, Write};
-use std::path::{Component, Path, PathBuf};
+use std::path::Component;
 
-use anyhow::Context as _;
 use tempfile::NamedTempFile;
 
-use crate::failure::Failure;
 use crate::output::escape;
+use crate::prelude::basics::*;
 pub use crate::settings::state_folder;
 use armctl_controller::text::{EncodeError, Encoding, unhex};
-use armctl_files as files;
 pub use armctl_files::folder_of;
 
 /// Maximum length of a name in common file systems.
@@ -85,7 +83,7 @@ impl LocalNames {
     }
 
     /// Local name for `name`. Each call with the same name returns the same local name.
-    pub fn assign(&mut self, name: &[u8]) -> Result<String, Failure> {
+    pub fn assign(&mut self, name: &[u8]) -> Result<String> {
         for local in [local_name(self.encoding, name), caseless_name(self.encoding, name)] {
             if local.is_empty() || local.len() > MAX_LOCAL_NAME {
                 return Err(Failure::local(format!("the name '{}' cannot be a local file name", name.escape_ascii()))
@@ -109,7 +107,7 @@ pub struct Target {
 
 impl Target {
     /// Creates a target. The file must not exist, unless `replace` is set.
-    pub fn new(path: PathBuf, replace: bool) -> Result<Self, Failure> {
+    pub fn new(path: PathBuf, replace: bool) -> Result<Self> {
         match path.symlink_metadata() {
             Ok(found) if !found.is_file() && !found.is_symlink() => {
                 return Err(Failure::local(format!("{} exists and is not a file", path.display()))
@@ -129,7 +127,7 @@ impl Target {
     }
 
     /// Starts to write the file. Until [`Draft::commit`], the target path does not change.
-    pub fn begin(&self) -> Result<Draft, Failure> {
+    pub fn begin(&self) -> Result<Draft> {
         let folder = folder_of(&self.path);
         let file = files::draft_in(&folder).with_context(|| folder.display().to_string())?;
         Ok(Draft { file: BufWriter::with_capacity(MAX_BUFFER, file), target: self.clone() })
@@ -145,12 +143,12 @@ pub struct Draft {
 
 impl Draft {
     /// Appends bytes.
-    pub fn write(&mut self, bytes: &[u8]) -> Result<(), Failure> {
+    pub fn write(&mut self, bytes: &[u8]) -> Result<()> {
         Ok(self.file.write_all(bytes).with_context(|| self.target.path.display().to_string())?)
     }
 
     /// Syncs the complete file to disk and moves it to its target path.
-    pub fn commit(self) -> Result<(), Failure> {
+    pub fn commit(self) -> Result<()> {
         let Target { path, replace } = self.target;
         let place = || path.display().to_string();
         let file = self.file.into_inner().map_err(std::io::IntoInnerError::into_error).with_context(place)?;
@@ -170,7 +168,7 @@ pub fn private_folder(folder: &Path, name: &str, several: bool) -> PathBuf {
 }
 
 /// Creates a folder if it does not exist.
-pub fn make_folder(folder: &Path) -> Result<(), Failure> {
+pub fn make_folder(folder: &Path) -> Result<()> {
     Ok(std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?)
 }
 
@@ -256,7 +254,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::failure::Kind;
 
     const SJIS: Encoding = Encoding::ShiftJis;
 

@@ -12,14 +12,10 @@ use std::sync::{Mutex, PoisonError};
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use super::report::Report;
 use super::value_kind::Candidate;
-use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
 use crate::settings::names::{KeptFile, RobotNames, grammar};
-use crate::settings::target::Family;
 use armctl_controller::names::{Grammar, Kind, Name, NameMatch, Names, unusable};
-use armctl_controller::similar_word::nearest;
 
 /// What the parser does with a word that is not an address.
 #[derive(Debug, Clone, Default)]
@@ -200,7 +196,7 @@ pub fn candidates(robots: &[Robot], kinds: &[Kind], ending: &str) -> Vec<Candida
 }
 
 /// Names of a robot that contain a text, or all names of the robot.
-pub fn list(robot: &Robot, filter: Option<&str>) -> Result<Listing, Failure> {
+pub fn list(robot: &Robot, filter: Option<&str>) -> Result<Listing> {
     let all = robot.names.all();
     if let Some(damage) = &all.damage {
         return Err(damage.clone());

@@ -4,10 +4,10 @@
 pub mod basics;
 
 pub use self::basics::*;
-pub use crate::commands;
-pub use crate::dry_run::{Known as _, Reason};
+pub use crate::confirmation::Confirmer;
+pub use crate::dry_run::{Known as _, Reason, unknown};
 pub use crate::run::{Run, RunError};
 pub use crate::settings_report::{NewValue, Old, SetReport};
 pub use crate::store::{Answers, Field, Ids, RowDifference, Single, Store, TableWords, Writable, ids, table_commands};
 pub use crate::watch::{Watch, Watchable, Watched};
-pub use crate::{Access, Command, ConnectMode, Context, Report, ValueKind};
+pub use crate::{Access, Command, ConnectMode, Context, ValueKind, commands, names};

@@ -148,7 +148,6 @@ impl CycleTimes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::failure::Kind;
 
     #[test]
     fn percentiles_are_measured_times() {

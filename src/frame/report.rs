@@ -2,9 +2,8 @@
 
 use schemars::Schema;
 use schemars::generate::SchemaSettings;
-use serde_json::Value;
 
-use crate::output::csv::{RowsOf, Sheet};
+use crate::output::csv::Sheet;
 use crate::prelude::basics::*;
 
 /// Report of a command.
@@ -27,12 +26,12 @@ pub trait Report: Serialize + JsonSchema {
 }
 
 /// A report, or a failure.
-pub type Outcome = Result<Box<dyn AnyReport>, Failure>;
+pub type Outcome = Result<Box<dyn AnyReport>>;
 
 /// [`Report`] without its concrete type.
 pub trait AnyReport {
     /// Value for `data` in the envelope.
-    fn data(&self) -> Result<Value, Failure>;
+    fn data(&self) -> Result<Value>;
     /// See [`Report::view`].
     fn view(&self) -> View;
     /// See [`Report::failure`].
@@ -44,7 +43,7 @@ pub trait AnyReport {
 }
 
 impl<R: Report> AnyReport for R {
-    fn data(&self) -> Result<Value, Failure> {
+    fn data(&self) -> Result<Value> {
         serde_json::to_value(self).map_err(|error| Failure::local(format!("report as JSON: {error}")))
     }
 

@@ -5,10 +5,6 @@ mod print;
 mod rounds;
 mod several;
 
-use std::path::{Path, PathBuf};
-use std::time::Duration;
-
-use anyhow::Context as _;
 use futures_util::StreamExt as _;
 use futures_util::stream;
 
@@ -151,7 +147,7 @@ impl Run {
     }
 
     /// Robots for a command. The command must be valid for them.
-    fn select_robots(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, Failure> {
+    fn select_robots(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>> {
         if command.intent(None).risk > Risk::Read && (self.repeat.is_wanted() || self.repeat.check.is_some()) {
             return Err(Failure::usage("--watch, --count, --until and --check need a command that only reads")
                 .hint("run this command once and watch `status` or `position`"));
@@ -181,7 +177,7 @@ impl Run {
     }
 
     /// Resolves the addresses of the robots for which an alias address matters. A dry run sends no request for this.
-    fn identify(&self, command: &dyn AnyCommand, robots: &mut [Robot]) -> Result<(), Failure> {
+    fn identify(&self, command: &dyn AnyCommand, robots: &mut [Robot]) -> Result<()> {
         let Some(driver) = command.driver().filter(|_| !self.gate.dry_run) else { return Ok(()) };
         for robot in robots {
             let intent = self.intent(command, robot);
@@ -222,7 +218,7 @@ impl Run {
     }
 
     /// Finds rejections for which no question is needed: unknown robots, missing permissions.
-    pub fn check_gate(&self, command: &dyn AnyCommand) -> Result<(), Failure> {
+    pub fn check_gate(&self, command: &dyn AnyCommand) -> Result<()> {
         if command.driver().is_none() {
             return Ok(());
         }
@@ -249,7 +245,7 @@ impl Run {
     }
 
     /// Evaluates the condition of `--check`.
-    fn check(&self, envelopes: &impl Serialize) -> Result<(), Failure> {
+    fn check(&self, envelopes: &impl Serialize) -> Result<()> {
         let Some(check) = self.repeat.check.as_ref().filter(|_| !self.gate.dry_run) else { return Ok(()) };
         let envelopes = as_value(envelopes)?;
         if check.is_met(&envelopes)? {
@@ -390,7 +386,7 @@ impl Run {
     }
 
     /// Failure that ends a watch. In a stream for programs, it is written to stdout in the order of the reports.
-    fn interrupted(&self, robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Result<RunError, Failure> {
+    fn interrupted(&self, robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Result<RunError> {
         // A wait reports only once, like a command without repetition.
         if self.is_for_people() || self.repeat.is_quiet || failure.kind == Kind::Interrupted {
             return Ok(RunError::for_robot(robot, command, failure));
@@ -413,11 +409,11 @@ impl Run {
         Ok(report)
     }
 
-    async fn connect(&self, command: &dyn AnyCommand, robot: &Robot, end: Deadline) -> Result<Granted, Failure> {
+    async fn connect(&self, command: &dyn AnyCommand, robot: &Robot, end: Deadline) -> Result<Granted> {
         end.bound(robot, self.connect_unbounded(command, robot)).await
     }
 
-    async fn connect_unbounded(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Granted, Failure> {
+    async fn connect_unbounded(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Granted> {
         let access = self.access(command, robot);
         let grant = access.grant.clone();
         let access = match &self.line {
@@ -428,7 +424,7 @@ impl Run {
         let robot = &match command.driver().filter(|_| goes_on) {
             Some(driver) => match open_shared_session(driver, robot).await {
                 // In a command for all families, a robot that does not answer also has a line in the table.
-                Err(failure) if failure.kind == Kind::NoAnswer && driver.family().is_none() => robot.clone(),
+                Err(failure) if failure.kind == Kind::NoAnswer && driver.family.is_none() => robot.clone(),
                 robot => robot?,
             },
             None => robot.clone(),
@@ -501,14 +497,14 @@ impl Run {
     /// Starts a guardian that stops the robot if this process dies or hangs. If a session of another process, or a
     /// fieldbus adapter, detects that the master is missing, this session or adapter stops the robot. In that case, the
     /// guardian only kills a process that hangs.
-    fn guardian(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Option<Guardian>, Failure> {
+    fn guardian(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Option<Guardian>> {
         let intent = command.intent(Some(robot));
         let moves = intent.risk == Risk::Motion && !intent.is_stop && !self.leaves_motion(command);
         let Some(driver) = command.driver().filter(|_| moves && !robot.target.value.is_simulated()) else {
             return Ok(None);
         };
         let stops = command.connection_effect(robot) == ConnectionEffect::Harmless && !is_held_by_other_process(robot);
-        Guardian::start(robot, driver.stop(), stops).map(Some)
+        Guardian::start(robot, driver.stop, stops).map(Some)
     }
 
     /// Runs the command once. Ctrl-C during a motion first stops the robot.
@@ -547,7 +543,7 @@ impl Run {
 
     /// Frames that `command` would send. The command runs to its end on a link that records the frames and has no
     /// answers.
-    async fn plan(&self, command: &dyn AnyCommand, robot: &Robot, screen: &Screen) -> Result<Plan, Failure> {
+    async fn plan(&self, command: &dyn AnyCommand, robot: &Robot, screen: &Screen) -> Result<Plan> {
         let access = Access { dry_run: true, ..self.access(command, robot) };
         let grant = access.grant.clone();
         let mut link = command.connect(robot, access, screen).await?;
@@ -564,7 +560,7 @@ impl Run {
     /// Checks whether the controller model supports the command. This check comes before any question, so that the user
     /// does not clear a cell for a mistyped command. Simulators are not checked: they need no question, and may have
     /// another model than the model in the settings.
-    async fn check_model(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), Failure> {
+    async fn check_model(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<()> {
         if self.gate.dry_run || robot.target.value.is_simulated() {
             return Ok(());
         }
@@ -573,7 +569,7 @@ impl Run {
 
     /// Truncates the `--trace` file. Every connection of this command appends to it. With several lines, only the first
     /// line truncates the file.
-    pub fn begin_trace(&self) -> Result<(), Failure> {
+    pub fn begin_trace(&self) -> Result<()> {
         begin_trace(self.trace.as_deref().filter(|_| !self.gate.dry_run && self.line.is_none()))
     }
 }
@@ -584,7 +580,7 @@ fn failure_of(outcome: &Outcome) -> Option<Failure> {
 }
 
 /// Truncates the `--trace` file. `-` is not a file.
-pub fn begin_trace(file: Option<&Path>) -> Result<(), Failure> {
+pub fn begin_trace(file: Option<&Path>) -> Result<()> {
     if let Some(path) = file.filter(|path| path.as_os_str() != "-") {
         std::fs::File::create(path).with_context(|| path.display().to_string())?;
     }

@@ -1,12 +1,7 @@
 //! A line of a REPL or batch that contains a command.
 
 use std::cell::RefCell;
-use std::fmt;
-use std::path::Path;
 use std::rc::Rc;
-use std::sync::Arc;
-
-use serde_json::Value;
 
 use super::connection::{Access, ConnectMode};
 use super::session_manager::{HeldBy, SessionManager};
@@ -48,7 +43,7 @@ impl fmt::Display for Origin {
 
 impl Line {
     /// Opens the link to a robot for later lines.
-    pub async fn hold(&self, robot: &Robot, trace: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
+    pub async fn hold(&self, robot: &Robot, trace: Option<&Path>, screen: &Screen) -> Result<()> {
         let trace = trace.map(Path::to_owned);
         let access = Access { trace, ..Access::reading(ConnectMode::Control) };
         self.connect(robot, access, screen).await.map(|_| ())
@@ -56,7 +51,7 @@ impl Line {
 
     /// Opens the link for later lines if the command needs a link. The link to a simulator is always kept open, because
     /// the simulator exists only as long as its link. Returns the access for the command.
-    pub async fn connect(&self, robot: &Robot, access: Access, screen: &Screen) -> Result<Access, Failure> {
+    pub async fn connect(&self, robot: &Robot, access: Access, screen: &Screen) -> Result<Access> {
         let access = Access { typed: Some(Arc::clone(&self.typed)), ..access };
         let needs_link = access.mode == ConnectMode::Control || robot.target.value.is_simulated();
         if !needs_link || robot.sessions == Sessions::None {

@@ -7,19 +7,14 @@ use std::fmt::Write as _;
 use std::io;
 use std::net::{IpAddr, SocketAddr};
 
-use anyhow::Context as _;
-use futures_util::FutureExt as _;
-use futures_util::future::{LocalBoxFuture, select_all};
-use schemars::JsonSchema;
-use serde::Serialize;
+use futures_util::future::select_all;
 use tokio::io::{AsyncBufReadExt as _, AsyncRead, AsyncReadExt as _, BufReader};
 
-use super::{Report, SchemaEntry};
-use crate::failure::{Failure, Kind, plain};
+use super::SchemaEntry;
+use crate::failure::plain;
 use crate::interrupt::interruptible;
-use crate::output::view::View;
+use crate::prelude::basics::*;
 use crate::run::{Run, RunError};
-use armctl_controller::similar_word::nearest;
 use armctl_controller::simulator::console::help_line;
 
 /// Arguments of `armctl sim FAMILY`.
@@ -35,7 +30,7 @@ pub trait Serve: Sized {
     type Server: Server + 'static;
 
     /// Starts to listen.
-    async fn start(self) -> Result<Started<Self>, Failure>;
+    async fn start(self) -> Result<Started<Self>>;
 }
 
 /// A simulator that listens.
@@ -60,38 +55,13 @@ pub struct Started<S: Serve> {
 }
 
 /// A simulator with its server.
-#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Server {
     /// Serves until an event arrives or is due, and handles the event. The future may be dropped.
-    async fn run_until_change(&mut self) -> io::Result<()>;
+    fn run_until_change(&mut self) -> LocalBoxFuture<'_, io::Result<()>>;
     /// Executes a console line and returns the result or the reason for a failure.
     fn console(&mut self, line: &str) -> Result<String, String>;
     /// Sets the faults of link and device in the form of `--fault`; `None` removes all faults.
     fn set_faults(&mut self, faults: Option<&str>) -> Result<(), String>;
-}
-
-/// A [`Server`] of any family.
-pub trait AnyServer {
-    /// See [`Server::run_until_change`].
-    fn run_until_change(&mut self) -> LocalBoxFuture<'_, io::Result<()>>;
-    /// See [`Server::console`].
-    fn console(&mut self, line: &str) -> Result<String, String>;
-    /// See [`Server::set_faults`].
-    fn set_faults(&mut self, faults: Option<&str>) -> Result<(), String>;
-}
-
-impl<S: Server> AnyServer for S {
-    fn run_until_change(&mut self) -> LocalBoxFuture<'_, io::Result<()>> {
-        Server::run_until_change(self).boxed_local()
-    }
-
-    fn console(&mut self, line: &str) -> Result<String, String> {
-        Server::console(self, line)
-    }
-
-    fn set_faults(&mut self, faults: Option<&str>) -> Result<(), String> {
-        Server::set_faults(self, faults)
-    }
 }
 
 /// A simulator of any family that listens.
@@ -101,7 +71,7 @@ pub struct NamedServer {
     /// URL of the simulator.
     pub target: String,
     /// Simulator.
-    pub server: Box<dyn AnyServer>,
+    pub server: Box<dyn Server>,
     /// What the simulator replays.
     pub replay: Option<String>,
 }
@@ -208,7 +178,7 @@ fn named_line(servers: &mut [NamedServer], line: &str) -> Result<String, String>
 }
 
 /// Executes a console line: `fault` is common to all simulators, the other lines belong to the family.
-fn console_line(server: &mut dyn AnyServer, line: &str) -> Result<String, String> {
+fn console_line(server: &mut dyn Server, line: &str) -> Result<String, String> {
     let line = line.trim();
     if line == "help" {
         let fault = help_line("fault FAULTS|off", "set or remove faults, as with --fault: fault delay=50ms");
@@ -239,7 +209,7 @@ impl<R: AsyncRead + Unpin> Console<R> {
     }
 
     /// Next line; `None` at the end.
-    async fn next(&mut self) -> Result<Option<String>, Failure> {
+    async fn next(&mut self) -> Result<Option<String>> {
         let room = u64::try_from(Self::MAX_LINE_LEN.saturating_sub(self.buffered.len())).unwrap_or_default();
         (&mut self.input).take(room).read_until(b'\n', &mut self.buffered).await.context("stdin")?;
         if self.buffered.len() >= Self::MAX_LINE_LEN {
@@ -252,7 +222,7 @@ impl<R: AsyncRead + Unpin> Console<R> {
 }
 
 /// Next line of the console, if there is a console.
-async fn next_line<R: AsyncRead + Unpin>(console: &mut Option<Console<R>>) -> Result<Option<String>, Failure> {
+async fn next_line<R: AsyncRead + Unpin>(console: &mut Option<Console<R>>) -> Result<Option<String>> {
     match console {
         Some(console) => console.next().await,
         None => std::future::pending().await,

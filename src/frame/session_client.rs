@@ -1,14 +1,11 @@
 //! Client side of sessions: finds the session that has the link of a robot, and connects to it.
 
-use std::path::Path;
-use std::time::Duration;
-
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 use tokio::time::timeout;
 
 use crate::prelude::basics::*;
-use crate::settings::target::{self, Address, Family, Target};
+use crate::settings::target::{self, Address, Target};
 use crate::settings::{Sessions, Sources};
 use crate::{Access, Driver};
 use armctl_transport::session::client::{self, AttachError, AttachResult, Attached, SessionBusy};
@@ -17,7 +14,7 @@ use armctl_transport::session::process;
 use armctl_transport::session::wire::{Info, Peer, Purpose};
 
 /// Returns the session of the robot, if one is open and `--no-session` is not set.
-pub async fn attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
+pub async fn attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>> {
     let attached = find_session(robot, access, screen).await?;
     if attached.is_none() && robot.sessions == Sessions::Only {
         let failure = Failure::new(Kind::NoAnswer, format!("{}: no session is open", robot.label()));
@@ -36,7 +33,7 @@ pub enum LockResult {
 
 /// Returns the session of a link that accepts only one client, or the claim to open the link. If another command has
 /// the claim, waits a short time for it.
-pub async fn lock_or_attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<LockResult, Failure> {
+pub async fn lock_or_attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<LockResult> {
     loop {
         if let Some(attached) = attach(robot, access, screen).await? {
             return Ok(LockResult::Session(attached));
@@ -75,7 +72,7 @@ pub fn in_use(robot: &Robot, location: &SessionPath) -> Failure {
     .hint("wait until that process ends, or use `armctl session open` first, so that commands share the connection")
 }
 
-async fn find_session(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
+async fn find_session(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>> {
     if robot.sessions == Sessions::None || access.dry_run {
         return Ok(None);
     }
@@ -213,11 +210,11 @@ fn sessions(place: &SessionFolder, family: Family) -> Vec<(SessionPath, Address)
 ///
 /// # Errors
 /// If the robot does not answer, so that its identity is unknown.
-pub fn identify(sources: &Sources, driver: &dyn Driver, robot: &mut Robot, changes: bool) -> Result<(), Failure> {
+pub fn identify(sources: &Sources, driver: &Driver, robot: &mut Robot, changes: bool) -> Result<()> {
     let own = robot.target.value.address();
     let is_bound = changes && sources.read_only(robot.family).any(|(address, _)| own.may_match(&address));
     if is_bound || may_be_held(robot, &own) {
-        robot.aliases = driver.addresses(robot)?;
+        robot.aliases = (driver.addresses)(robot)?;
         sources.apply_read_only(robot);
     }
     Ok(())

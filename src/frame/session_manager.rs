@@ -2,18 +2,15 @@
 //! (`fleet/session/host.rs`).
 
 use std::collections::HashMap;
-use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use tokio::sync::{mpsc, oneshot};
 
 use super::connection::Access;
 use super::interrupt::interruptible;
 use super::session_client::own_key;
-use crate::failure::Failure;
-use crate::output::Screen;
-use crate::settings::Robot;
+use crate::prelude::basics::*;
 use armctl_transport::session::direct::HostHandle;
 
 /// Handle of the manager that keeps links open between the lines of this process. The manager has its own thread, so
@@ -38,7 +35,7 @@ pub enum ManagerRequest {
         /// Screen for notes.
         screen: Screen,
         /// Channel for the result.
-        done: oneshot::Sender<Result<HeldBy, Failure>>,
+        done: oneshot::Sender<Result<HeldBy>>,
     },
     /// Close all links, and report when they are closed.
     End(oneshot::Sender<()>),
@@ -84,7 +81,7 @@ impl SessionManager {
     }
 
     /// Keeps the link to a robot open, and returns which process has the link.
-    pub async fn hold(&self, robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldBy, Failure> {
+    pub async fn hold(&self, robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldBy> {
         if let Some(session) = self.held(&own_key(robot)) {
             return Ok(HeldBy::ThisProcess(session));
         }

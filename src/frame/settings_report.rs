@@ -1,9 +1,7 @@
 //! Common arguments and reports of commands that set a value.
 
-use clap::ValueEnum;
-use serde_json::{Map, Value};
+use serde_json::Map;
 
-use super::report::Report;
 use crate::face::shared_commands::CommonReport;
 use crate::prelude::basics::*;
 use crate::robot::item::{Item, Written, WrittenItems};

@@ -13,8 +13,8 @@ use crate::settings::{Origin, Robot, Sessions, duration};
 const IDLE_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Whether the robot accepts only one client, and other commands may share its link.
-pub fn can_share(driver: &dyn Driver, robot: &Robot) -> bool {
-    robot.sessions == Sessions::Shared && driver.takes_one_client(robot)
+pub fn can_share(driver: &Driver, robot: &Robot) -> bool {
+    robot.sessions == Sessions::Shared && (driver.takes_one_client)(robot)
 }
 
 /// Opens a background session for a robot that accepts only one client, or uses an existing session. Returns the robot
@@ -22,7 +22,7 @@ pub fn can_share(driver: &dyn Driver, robot: &Robot) -> bool {
 ///
 /// # Errors
 /// If the link cannot be opened.
-pub async fn open_shared_session(driver: &dyn Driver, robot: &Robot) -> Result<Robot, Failure> {
+pub async fn open_shared_session(driver: &Driver, robot: &Robot) -> Result<Robot, Failure> {
     if !can_share(driver, robot) {
         return Ok(robot.clone());
     }

@@ -1,7 +1,5 @@
 //! Table files for spreadsheets: the path, and the content that an update keeps.
 
-use std::path::PathBuf;
-
 use super::local_names::Target;
 use super::text_files;
 use crate::prelude::basics::*;
@@ -29,7 +27,7 @@ pub struct SheetTarget {
     target: Target,
     dialect: Dialect,
     /// Content of the existing file, which an update keeps.
-    old: Option<Vec<u8>>,
+    pub old: Option<Vec<u8>>,
 }
 
 impl SheetManner {
@@ -44,7 +42,7 @@ impl SheetManner {
     }
 
     /// File for the rows of one robot.
-    pub fn target(&self, file: PathBuf, several: bool) -> Result<SheetTarget, Failure> {
+    pub fn target(&self, file: PathBuf, several: bool) -> Result<SheetTarget> {
         if several {
             return Err(text_files::of_one_robot(&file));
         }
@@ -60,11 +58,6 @@ impl SheetManner {
 }
 
 impl SheetTarget {
-    /// Content of the existing file, whose rows get new values.
-    pub fn old(&self) -> Option<&[u8]> {
-        self.old.as_deref()
-    }
-
     /// Writes the rows atomically, and returns the path. The first column identifies a row; `canonical` normalizes its
     /// text.
     pub fn write(
@@ -72,7 +65,7 @@ impl SheetTarget {
         columns: &[Column],
         rows: &[Vec<String>],
         canonical: impl Fn(&str) -> String,
-    ) -> Result<String, Failure> {
+    ) -> Result<String> {
         let text = match &self.old {
             None => write(self.dialect, columns, rows),
             Some(old) => {

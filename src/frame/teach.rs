@@ -1,14 +1,9 @@
 //! Report of `teach` for all families, and positions from the output of other commands.
 
-use std::path::Path;
-
-use anyhow::Context as _;
 use serde_json::{Map, Value as Json};
 
-use super::report::Report;
 use crate::prelude::basics::*;
 use crate::robot::position::Position;
-use armctl_files as files;
 
 /// Result of teaching a point: the old and new content of the point, and the position of the robot.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -81,7 +76,7 @@ const SIZE_LIMIT: u64 = 1 << 20;
 /// Reads a position from the output of another command, in a file or on stdin (`-`), and returns it as the user would
 /// type it. The output can be `text` of `position --json`, an item of `get --json`, or the position itself. If a robot
 /// has several frames, the axes are used.
-pub fn parse_printed_position(path: &Path) -> Result<String, Failure> {
+pub fn parse_printed_position(path: &Path) -> Result<String> {
     let json = printed_texts(path)?;
     let rows = ["positions", "items", "variables", "points"].iter().find_map(|list| json.get(*list)?.as_array());
     let found = match rows.map(Vec::as_slice) {
@@ -109,7 +104,7 @@ fn text(json: &Json) -> Option<String> {
 }
 
 /// JSON in a file or on stdin (`-`). Of an envelope, only the data is returned.
-fn printed_texts(path: &Path) -> Result<Json, Failure> {
+fn printed_texts(path: &Path) -> Result<Json> {
     let shown = if path == Path::new("-") { "stdin".to_owned() } else { path.display().to_string() };
     let bytes = files::input(path, SIZE_LIMIT).with_context(|| shown.clone())?;
     let json: Result<Json, _> = serde_json::from_slice(&bytes);
@@ -121,7 +116,6 @@ fn printed_texts(path: &Path) -> Result<Json, Failure> {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
 

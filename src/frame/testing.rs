@@ -1,12 +1,10 @@
 //! Test support for all families.
 
 use clap::{Args as _, FromArgMatches as _};
-use futures_util::FutureExt as _;
-use serde_json::Value;
 
 use super::command::{AnyCommand, AnyContext, Context};
 use super::confirmation::Confirmer;
-use super::connection::{self, Access, Borrowed, ConnectMode, Family};
+use super::connection::{self, Access, ConnectMode, Family, Linked};
 use super::dry_run::{DryRun, is_end};
 use super::report::{AnyReport as _, Outcome};
 use super::settings_report::OLD_VALUE;
@@ -36,7 +34,7 @@ pub fn context<'a, F: Family>(robot: &'a Robot, link: &'a mut F::Link) -> Contex
 /// Runs a command on a link that the test continues to own.
 pub async fn run<F: Family>(command: &dyn AnyCommand, context: Context<'_, F>) -> Outcome {
     let Context { robot, link, screen, several, confirmer } = context;
-    let mut borrowed = Borrowed::<F>(link);
+    let mut borrowed = Linked::<F>::Borrowed(link);
     command.run(AnyContext { robot, connection: &mut borrowed, screen, several, confirmer }).await
 }
 
@@ -45,7 +43,7 @@ pub fn planned<F: Family>(
     robot: &Robot,
     command: &dyn AnyCommand,
     prepare: impl FnOnce(&mut F::Link),
-) -> Result<Value, Failure> {
+) -> Result<Value> {
     let intent = command.intent(Some(robot));
     let grant = Grant::up_to(intent.initial_risk());
     let access = Access { grant: grant.clone(), dry_run: true, ..Access::reading(command.connect_mode(robot)) };
@@ -77,30 +75,30 @@ pub fn count_before(planned: &Value) -> usize {
 }
 
 /// The words after `armctl`, as clap reads them in the program with all families.
-fn program(face: &dyn Face) -> clap::Command {
+fn program(face: &Face) -> clap::Command {
     Globals::augment_args(clap::Command::new("armctl")).subcommand(family(face))
 }
 
 /// The command of a family, with all subcommands.
-pub fn family(face: &dyn Face) -> clap::Command {
-    face.augment(clap::Command::new(face.family().name()))
+pub fn family(face: &Face) -> clap::Command {
+    (face.augment)(clap::Command::new(face.family.name()))
 }
 
 /// Parses `armctl -t TARGET FAMILY WORDS…`.
-pub fn parse(face: &dyn Face, target: &str, words: &[&str]) -> Result<(Globals, FamilyLine), clap::Error> {
-    let line = [&["armctl", "-t", target, face.family().name()], words].concat();
+pub fn parse(face: &Face, target: &str, words: &[&str]) -> Result<(Globals, FamilyLine), clap::Error> {
+    let line = [&["armctl", "-t", target, face.family.name()], words].concat();
     let mut matches = program(face).try_get_matches_from(line)?;
     let globals = Globals::from_arg_matches_mut(&mut matches)?;
     let (_, mut typed) = matches.remove_subcommand().expect("the line names the family");
-    Ok((globals, face.read(&mut typed)?))
+    Ok((globals, (face.read)(&mut typed)?))
 }
 
 /// Robot and command of a line.
-pub fn resolve(face: &dyn Face, target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
+pub fn resolve(face: &Face, target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>)> {
     let (globals, typed) = parse(face, target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: globals.target, ..Selection::default() };
     let flags = Options { encoding: globals.encoding, ..Options::default() };
-    let robot = Sources { selection, flags, ..Sources::default() }.robots(Some(face.family()))?.remove(0);
+    let robot = Sources { selection, flags, ..Sources::default() }.robots(Some(face.family))?.remove(0);
     match typed.command {
         ParsedCommand::Command(command) => Ok((robot, command)),
         _ => panic!("{words:?} is not a command"),
@@ -123,10 +121,7 @@ pub fn for_lines<T>(cases: impl IntoIterator<Item = (&'static str, T)>, check: i
 
 /// Each line is a usage error, of the parser or of the dry run, with this part in its message.
 #[track_caller]
-pub fn rejects(
-    plan: impl Fn(&[&str]) -> Result<Value, Failure>,
-    cases: impl IntoIterator<Item = (&'static str, &'static str)>,
-) {
+pub fn rejects(plan: impl Fn(&[&str]) -> Result<Value>, cases: impl IntoIterator<Item = (&'static str, &'static str)>) {
     for_lines(cases, |line, words, part| {
         let failure = plan(words).expect_err(line);
         assert_eq!(failure.kind, Kind::Usage, "{line}: {failure}");

@@ -1,18 +1,16 @@
 //! Input and output files that the user names.
 
 use std::io::ErrorKind;
-use std::path::Path;
 
 use super::local_names::Target;
-use crate::failure::Failure;
+use crate::prelude::basics::*;
 use armctl_controller::findings::Finding;
-use armctl_files as files;
 
 /// Maximum file size. It is larger than all data of a controller.
 const SIZE_LIMIT: u64 = 16 << 20;
 
 /// Reads a file, or stdin for `-`.
-pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+pub fn read(path: &Path) -> Result<Vec<u8>> {
     files::input(path, SIZE_LIMIT).map_err(|error| match error.kind() {
         ErrorKind::FileTooLarge => {
             Failure::usage(format!("{} is larger than the memory of a controller", display_path(path)))
@@ -28,7 +26,7 @@ pub fn display_path(path: &Path) -> String {
 }
 
 /// Target for one robot of an optional file. It is checked before any request to the controller.
-pub fn target(file: Option<&Path>, force: bool, several: bool) -> Result<Option<Target>, Failure> {
+pub fn target(file: Option<&Path>, force: bool, several: bool) -> Result<Option<Target>> {
     let Some(file) = file else { return Ok(None) };
     if several {
         return Err(of_one_robot(file));
@@ -43,7 +41,7 @@ pub fn of_one_robot(file: &Path) -> Failure {
 }
 
 /// Writes a file atomically and returns its path.
-pub fn write(target: &Target, text: &str) -> Result<String, Failure> {
+pub fn write(target: &Target, text: &str) -> Result<String> {
     let mut draft = target.begin()?;
     draft.write(text.as_bytes())?;
     draft.commit()?;

@@ -2,15 +2,12 @@
 
 use std::io;
 use std::net::SocketAddr;
-use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
-
-use anyhow::Context as _;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::connection::Access;
-use crate::failure::{Failure, plain};
-use crate::output::Screen;
+use crate::failure::plain;
+use crate::prelude::basics::*;
 use armctl_controller::simulator::recording::AnswerLog;
 use armctl_controller::text::hex;
 use armctl_transport::tap::{CaptureWriter, Direction};
@@ -31,25 +28,21 @@ pub struct Trace {
 
 impl Trace {
     /// Trace of packets with addresses, as the options request it. The capture file is created at once.
-    pub fn of_network(access: &Access, screen: &Screen) -> Result<Self, Failure> {
+    pub fn of_network(access: &Access, screen: &Screen) -> Result<Self> {
         Self::open(access, screen, CaptureWriter::append)
     }
 
     /// Trace of whole packets with this link type.
-    pub fn of_packets(access: &Access, screen: &Screen, link_type: u16) -> Result<Self, Failure> {
+    pub fn of_packets(access: &Access, screen: &Screen, link_type: u16) -> Result<Self> {
         Self::open(access, screen, |path| CaptureWriter::append_packets(path, link_type))
     }
 
     /// Trace of data without addresses.
-    pub fn of_lines(access: &Access, screen: &Screen) -> Result<Self, Failure> {
+    pub fn of_lines(access: &Access, screen: &Screen) -> Result<Self> {
         Self::open(access, screen, CaptureWriter::append_streams)
     }
 
-    fn open(
-        access: &Access,
-        screen: &Screen,
-        begin: impl Fn(&Path) -> io::Result<CaptureWriter>,
-    ) -> Result<Self, Failure> {
+    fn open(access: &Access, screen: &Screen, begin: impl Fn(&Path) -> io::Result<CaptureWriter>) -> Result<Self> {
         let mut level = screen.verbosity.saturating_sub(1);
         let capture = match access.trace.as_deref() {
             Some(path) if path == Path::new("-") => {
@@ -131,7 +124,7 @@ impl Trace {
     }
 
     /// Closes the trace. Returns a failure if the trace is incomplete.
-    pub fn finish(&mut self) -> Result<(), Failure> {
+    pub fn finish(&mut self) -> Result<()> {
         self.failure.take().map_or(Ok(()), Err)
     }
 }

@@ -1,9 +1,6 @@
 //! Kinds of argument values, for completion.
 
-use futures_util::future::LocalBoxFuture;
-use serde_json::Value;
-
-use crate::settings::target::Family;
+use crate::prelude::basics::*;
 use armctl_controller::names::Kind;
 
 /// Kind of value that has completion candidates.

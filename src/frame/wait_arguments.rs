@@ -1,10 +1,6 @@
 //! `--wait` and `--no-wait`: whether a command waits for the end of the action that it started.
 
-use std::time::Duration;
-
-use clap::Args;
-
-use crate::settings::duration;
+use crate::prelude::basics::*;
 
 /// Wait option of a motion or another long action. By default, the command waits.
 #[derive(Debug, Clone, Copy, Args)]

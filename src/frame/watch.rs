@@ -2,19 +2,16 @@
 
 use std::cell::RefCell;
 use std::marker::PhantomData;
-use std::time::Duration;
 
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 use schemars::{Schema, SchemaGenerator};
-use serde_json::{Map, Value};
+use serde_json::Map;
 
 use super::command::{Command, Context};
 use super::connection::{ConnectMode, Family};
-use super::report::{AnyReport as _, Report};
-use crate::output::csv::RowsOf;
+use super::report::AnyReport as _;
 use crate::prelude::basics::*;
-use crate::settings::duration;
 
 /// Read interval for families without change notifications.
 const POLL_INTERVAL: Duration = Duration::from_millis(100);
@@ -63,7 +60,7 @@ pub trait Watchable: Command {
     const WATCHED: Watched;
 
     /// Waits until a new read can give new values.
-    async fn changed(&self, _link: &mut <Self::Family as Family>::Link) -> Result<(), Failure> {
+    async fn changed(&self, _link: &mut <Self::Family as Family>::Link) -> Result<()> {
         tokio::time::sleep(POLL_INTERVAL).await;
         Ok(())
     }
@@ -93,7 +90,7 @@ impl<C: Watchable + Args> Command for Watch<C> {
         true
     }
 
-    async fn run(&self, context: Context<'_, C::Family>) -> Result<Changes<C::Value>, Failure> {
+    async fn run(&self, context: Context<'_, C::Family>) -> Result<Changes<C::Value>> {
         let Context { robot, link, screen, several, confirmer } = context;
         loop {
             if self.before.borrow().is_some() {
@@ -358,7 +355,6 @@ impl<V: Serialize + JsonSchema> Report for Changes<V> {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
     use crate::report::sheet_of;

@@ -1,12 +1,9 @@
 //! Commands `toyo alarm list|history|watch|reset|point`.
 
 use super::explain::alarm_from_code;
-use super::link::Link;
-use super::link::Toyo;
 use super::wait::{status_page, wait_for_status};
 use crate::prelude::*;
 use armctl_controller::toyo::errors;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::face::shared_commands::CommonReport;
 use armctl_frame::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, ExtraColumns, Nothing, Row, Source};
 use armctl_frame::settings::alarms;
@@ -38,7 +35,7 @@ impl Command for List {
     type Report = Alarms<Axis>;
     const ID: &'static str = "toyo.alarm.list";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Alarms<Axis>, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Alarms<Axis>> {
         let link = context.link;
         if link.is_dry_run() {
             link.plan(&status_page(0), "whether there is an error");
@@ -61,13 +58,13 @@ impl Watchable for List {
 
 /// Returns the code of the present error; `None` if there is no error. If the controller reports an error without a
 /// code, the code is 00.
-async fn read_error_code(link: &mut Link) -> Result<Option<u8>, Failure> {
+async fn read_error_code(link: &mut Link) -> Result<Option<u8>> {
     let status = link.status_of(&[0, 1]).await?;
     Ok((status.has_error() || status.error != errors::NONE).then_some(status.error))
 }
 
 /// Reads the present alarms as a list.
-pub(super) async fn present_alarms(link: &mut Link) -> Result<Vec<Told>, Failure> {
+pub(super) async fn present_alarms(link: &mut Link) -> Result<Vec<Told>> {
     Ok(read_error_code(link).await?.map(alarm_from_code).into_iter().collect())
 }
 
@@ -97,7 +94,7 @@ fn entry(code: u8) -> AlarmEntry<Axis> {
 }
 
 /// Adds the user's texts from `alarms.toml` to the entry.
-fn with_site_texts(entry: AlarmEntry<Axis>, robot: &Robot) -> Result<AlarmEntry<Axis>, Failure> {
+fn with_site_texts(entry: AlarmEntry<Axis>, robot: &Robot) -> Result<AlarmEntry<Axis>> {
     let code = entry.alarm.code.clone().unwrap_or_default();
     Ok(AlarmEntry { alarm: entry.alarm.with(alarms::find(robot, &code)?), ..entry })
 }
@@ -115,7 +112,7 @@ impl Command for History {
     type Report = Alarms<Axis>;
     const ID: &'static str = "toyo.alarm.history";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Alarms<Axis>, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Alarms<Axis>> {
         let link = context.link;
         let entry_request = |number: u8| Request::of(table::Command::Ehtr, [Value::Number(number.into())]);
         if link.is_dry_run() {
@@ -174,7 +171,7 @@ impl Command for Reset {
     const ID: &'static str = "toyo.alarm.reset";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<ResetReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<ResetReport> {
         let link = context.link;
         let code = |status: &Status| (status.error != errors::NONE).then(|| format!("{:02X}", status.error));
         let old = Old::read(link.status_before(1).await?.as_ref().and_then(code));
@@ -230,7 +227,7 @@ impl Command for Point {
     type Report = PointReport;
     const ID: &'static str = "toyo.alarm.point";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<PointReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<PointReport> {
         let record = context.link.ask(&Request::bare(table::Command::Merp)).await?;
         let point = record.text("point").map(str::trim).filter(|point| !point.is_empty());
         Ok(PointReport { point: point.map(ToOwned::to_owned) })

@@ -1,7 +1,5 @@
 //! `toyo bus`: the CC-Link board.
 
-use super::link::Toyo;
-use super::link::wrong;
 use super::number_arguments::saturated_byte;
 use crate::prelude::*;
 
@@ -18,7 +16,7 @@ impl Command for Bus {
     type Report = CcLink;
     const ID: &'static str = "toyo.bus";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<CcLink, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<CcLink> {
         let page = |form| Request::in_form(table::Command::Mbus, form, Vec::new()).map_err(|error| wrong(&error));
         let (settings, errors) = (page(0)?, page(1)?);
         context.link.plan_all(&[settings.clone(), errors.clone()])?;

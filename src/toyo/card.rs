@@ -1,9 +1,7 @@
 //! `toyo card read|write`: the memory card.
 
-use super::link::Toyo;
 use super::wait::{AcceptedWork, Work};
 use crate::prelude::*;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::wait_arguments::MotionEnd;
 
 commands! {
@@ -38,7 +36,7 @@ impl Command for Read {
     const INTENT: &'static str =
         "replace programs, tables and parameters of the controller with the content of the memory card";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<TransferReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<TransferReport> {
         let work = AcceptedWork {
             work: Work::Card,
             order: table::Command::Rmca,
@@ -56,7 +54,7 @@ impl Command for Write {
     const RISK: Risk = Risk::Destroy;
     const INTENT: &'static str = "overwrite the content of the memory card";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<TransferReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<TransferReport> {
         let work = AcceptedWork {
             work: Work::Card,
             order: table::Command::Wmca,
@@ -67,7 +65,7 @@ impl Command for Write {
     }
 }
 
-async fn transfer(context: Context<'_, Toyo>, work: AcceptedWork, no_wait: bool) -> Result<TransferReport, Failure> {
+async fn transfer(context: Context<'_, Toyo>, work: AcceptedWork, no_wait: bool) -> Result<TransferReport> {
     let link = context.link;
     link.ask(&Request::bare(work.order)).await?;
     if no_wait {

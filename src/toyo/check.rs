@@ -1,8 +1,6 @@
 //! Checks of `armctl robots check` that are specific to the controller.
 
 use super::info;
-use super::link::Link;
-use super::link::Toyo;
 use super::overview::left_over;
 use crate::prelude::*;
 use armctl_controller::toyo::errors;
@@ -15,7 +13,7 @@ const LAYERS: &[&str] =
     &["line", "answer", "version", "teach pendant", "mode", "slaves", "power cycle", "error", "servo", "origin"];
 
 /// Checks the layers. It sends only read requests.
-pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
+pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>> {
     let mut layers = Layers::new(robot.label(), LAYERS);
     match Toyo::connect(robot, access, screen).await {
         Err(failure) => layers.fail("line", &failure),

@@ -1,27 +1,28 @@
 //! Connection to the controller of a target: serial port, device server, simulator, or a session.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 
 use super::failure::failure;
 use super::link::Toyo;
 use super::overview::overview;
 use super::simulated;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_client::toyo::{Client, Endpoint, Error, Line, Options};
 use armctl_frame::Family as _;
 use armctl_frame::backup::recording::with_replay;
+use armctl_frame::face::HeldLink;
 use armctl_frame::session_client::{LockResult, lock_or_attach};
 use armctl_frame::settings::Sessions;
-use armctl_frame::settings::target::{self, Family, Place};
+use armctl_frame::settings::target::{self, Place};
 use armctl_frame::trace::lock_writer;
 use armctl_transport::fault::LineFaultSpec;
 use armctl_transport::serial;
-use armctl_transport::session::host::shared_link;
+use armctl_transport::session::host::shared_link::{self, SharedLink};
 use armctl_transport::session::location::Claim;
 use armctl_transport::stream::Stream;
 
 /// Endpoint of a target.
-fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
+fn endpoint(robot: &Robot) -> Result<Endpoint> {
     match &robot.target.value.place {
         Place::Serial(target::Serial { path, baud, data_bits, parity, stop_bits }) => {
             Ok(Endpoint::Serial(serial::Line {
@@ -57,7 +58,7 @@ pub fn options(robot: &Robot, access: &Access) -> Options {
 }
 
 /// Connects to the target of a robot.
-pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Client, Failure> {
+pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Client> {
     let options = options(robot, access);
     if access.dry_run {
         return Ok(Client::dry_run(options));
@@ -88,7 +89,7 @@ struct Connector {
 
 impl Connector {
     /// Opens the line, or joins the session that has already opened it.
-    async fn open(&self) -> Result<Line, Failure> {
+    async fn open(&self) -> Result<Line> {
         let Self { endpoint, robot, access, screen, claim } = self;
         if lock_writer(claim).is_none() {
             match lock_or_attach(robot, access, screen).await? {
@@ -102,7 +103,7 @@ impl Connector {
 
 /// Opens a line for a session. The session opens it again after a loss. An open line does not prove that there is a
 /// controller, so a first request checks this.
-pub async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<shared_link::Line, Failure> {
+pub async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink> {
     let robot = Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Toyo::connect(&robot, access.clone(), screen).await?;
     overview(&mut link).await?;
@@ -110,8 +111,9 @@ pub async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) 
     // connection.
     let open = link.into_line().ok_or_else(|| Failure::local("internal error: a dry run has no line"))?;
     let (endpoint, timeout, label) = (endpoint(&robot)?, robot.timeout.value, robot.label());
-    Ok(shared_link::Line::new(open, move || {
+    let opened = shared_link::Line::new(open, move || {
         let (endpoint, label) = (endpoint.clone(), label.clone());
         Box::pin(async move { endpoint.open(timeout).await.map_err(|error| failure(&label, error).message) })
-    }))
+    });
+    Ok(SharedLink::Stream(opened).into())
 }

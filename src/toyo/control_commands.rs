@@ -1,9 +1,6 @@
 //! Commands that send one block: servo, mode, reset, stop.
 
-use clap::ValueEnum;
-
 use super::link::MotionKind;
-use super::link::Toyo;
 use super::position::UNIT;
 use super::wait::wait_for_status;
 use crate::prelude::*;
@@ -34,7 +31,7 @@ impl Command for Servo {
         }
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport> {
         let Context { link, confirmer, .. } = context;
         let (command, is_on, words) = match self.to {
             Switch::On => (table::Command::Svon, true, "servo power is on"),
@@ -136,7 +133,7 @@ impl Command for Mode {
     const ID: &'static str = "toyo.mode";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport> {
         let (link, mode) = (context.link, self.mode);
         let old = Old::read(link.status_before(2).await?.and_then(|status| mode.instead_of(status)));
         link.ask(&Request::bare(mode.command())).await?;
@@ -167,7 +164,7 @@ impl Command for Reset {
     const ID: &'static str = "toyo.reset";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport> {
         context.link.ask(&Request::bare(table::Command::Rest)).await?;
         let words = "the controller was reset; `toyo alarm reset` cancels errors";
         Ok(NewValue::of("programs", "reset", words).replaces(Old::UNREAD))
@@ -201,7 +198,7 @@ impl Command for Stop {
         true
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<StopReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<StopReport> {
         let moving = if self.jog { MotionKind::Jog } else { MotionKind::Program };
         let record = context.link.stop(moving).await;
         if context.link.is_dry_run() {

@@ -1,8 +1,6 @@
 //! `toyo coordinate set`: sends coordinates to a program that waits for them.
 
 use super::field_values::{Changes, assignment, json};
-use super::link::Toyo;
-use super::link::wrong;
 use super::point::table as point_table;
 use super::position::Coordinates;
 use crate::prelude::*;
@@ -81,7 +79,7 @@ impl Command for Set {
         self.in_words(&axes.collect::<Vec<_>>().join(", "))
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport> {
         let Self { values, task, speed } = self;
         let Context { link, confirmer, .. } = context;
         let letters = link.letters().await?;

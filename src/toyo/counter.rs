@@ -2,9 +2,7 @@
 
 use super::eeprom_tables::Listed;
 use super::item_reads::read_each;
-use super::link::{Link, Toyo, wrong};
 use super::number_arguments::{Numbers, number, read_back, read_back_mismatch};
-use crate::complete;
 use crate::prelude::*;
 use armctl_controller::names::Kind;
 use armctl_controller::toyo::field;
@@ -74,7 +72,7 @@ impl Store for Counters {
         names_of::counter(u8::try_from(counter).unwrap_or(u8::MAX))
     }
 
-    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self> {
         Ok(Self)
     }
 
@@ -98,7 +96,7 @@ impl Store for Counters {
         count(record) == Some(0)
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, counters: &[i32]) -> Result<Answers<Record>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, counters: &[i32]) -> Result<Answers<Record>> {
         let requests: Vec<Request> = counters.iter().copied().map(read).collect();
         Ok(Answers::of(read_each(link, screen, "reading counters", &requests).await?))
     }
@@ -126,14 +124,14 @@ impl Writable for Counters {
         texts.first().copied().flatten().map(|text| number(&fields()[1], text)).transpose()
     }
 
-    fn complete_draft(&self, counter: i32, draft: &Option<i32>, _old: Option<&Record>) -> Result<Record, Failure> {
+    fn complete_draft(&self, counter: i32, draft: &Option<i32>, _old: Option<&Record>) -> Result<Record> {
         let missing = || Failure::usage(format!("{}: the count is missing", Self::name(counter)));
         let count = draft.ok_or_else(|| missing().hint("write a number from 0 to 9999"))?;
         let record = read(counter).row().answers[0].record(vec![Value::Number(counter), Value::Number(count)]);
         record.map_err(|error| wrong(&error))
     }
 
-    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<()> {
         for (counter, draft) in rows {
             let text = match draft {
                 Some(count) => order(*counter, *count).text(),
@@ -144,7 +142,7 @@ impl Writable for Counters {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<()> {
         for (counter, _, new) in rows {
             let new_count = count(new).unwrap_or_default();
             let order = order(*counter, new_count);
@@ -201,7 +199,7 @@ impl Store for Timers {
         names_of::timer(u8::try_from(number).unwrap_or(u8::MAX))
     }
 
-    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self> {
         Ok(Self)
     }
 
@@ -225,7 +223,7 @@ impl Store for Timers {
         record.number("time") == Some(0)
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, timers: &[i32]) -> Result<Answers<Record>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, timers: &[i32]) -> Result<Answers<Record>> {
         let requests = timers.iter().map(|number| Request::of(table::Command::Mtmr, [Value::Number(*number)]));
         let requests: Vec<Request> = requests.collect();
         Ok(Answers::of(read_each(link, screen, "reading timers", &requests).await?))

@@ -38,7 +38,7 @@ impl decode::Decode for Decode {
     type Report = DecodedLines;
     type Capture = LineDecoder;
 
-    fn capture(&self) -> Result<Option<(Input<'_>, LineDecoder)>, Failure> {
+    fn capture(&self) -> Result<Option<(Input<'_>, LineDecoder)>> {
         Ok(file_among(&self.lines).map(|path| (Input::File(path), LineDecoder::default())))
     }
 
@@ -46,7 +46,7 @@ impl decode::Decode for Decode {
         &self.selection
     }
 
-    fn decode(&self) -> Result<DecodedLines, Failure> {
+    fn decode(&self) -> Result<DecodedLines> {
         Ok(decode_lines(&self.lines()?))
     }
 
@@ -64,7 +64,7 @@ impl decode::Decode for Decode {
 }
 
 impl Decode {
-    fn lines(&self) -> Result<Vec<String>, Failure> {
+    fn lines(&self) -> Result<Vec<String>> {
         let lines =
             if self.lines == ["-"] { stdin()?.lines().map(str::to_owned).collect() } else { joined(&self.lines) };
         // A block is never empty. In a trace, the bytes repeat the line above them.
@@ -203,7 +203,6 @@ impl Report for DecodedLines {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_frame::failure::Kind;
 
     fn senders(lines: &[&str]) -> Vec<&'static str> {
         let lines = lines.iter().map(ToString::to_string).collect();

@@ -3,8 +3,7 @@
 //! For this reason, a value that is already equal is not written. Each write is read back, because a worn cell answers
 //! `@OK` and keeps its old value (ambiguity R29).
 
-use super::link::Link;
-use super::refusal;
+use super::number_arguments::read_back;
 use crate::prelude::*;
 use armctl_controller::toyo::layout::LayoutProblem;
 use armctl_controller::toyo::table::{Command, Op};
@@ -53,7 +52,7 @@ impl Link {
     /// # Errors
     /// Like [`Link::ask`]. [`Kind::OutcomeUnknown`] if the cell cannot be read back, and [`Kind::Malformed`] if it has
     /// another value after the write.
-    pub async fn store(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<Option<Record>, Failure> {
+    pub async fn store(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<Option<Record>> {
         if self.is_dry_run() {
             self.plan(&cell.read, STORED_VALUE);
             return self.plan_overwriting(&cell.read, &cell.write.text()).await.map(|()| None);
@@ -69,7 +68,7 @@ impl Link {
 
     /// In a dry run, records the requests of [`Link::overwrite`] for a cell that differs: the block that writes it, in
     /// which `?` stands for values that are kept, and the request that reads it back.
-    pub async fn plan_overwriting(&mut self, read: &Request, write: &str) -> Result<(), Failure> {
+    pub async fn plan_overwriting(&mut self, read: &Request, write: &str) -> Result<()> {
         self.plan_order(write, DIFFERS).await?;
         self.plan_if(read, DIFFERS);
         Ok(())
@@ -79,20 +78,12 @@ impl Link {
     ///
     /// # Errors
     /// Like [`Link::store`].
-    pub async fn overwrite(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<(), Failure> {
+    pub async fn overwrite(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<()> {
         self.ask(&cell.write).await?;
         if let Some(warning) = self.write_log.written(cell.read.text().trim_start_matches('@')) {
             screen.note(&format!("warning: {warning}"));
         }
-        let is_stored = self.holds(cell).await.map_err(|failure| {
-            let message = format!(
-                "the controller accepted {}, but the value could not be read back: {}",
-                cell.write.text(),
-                failure.message
-            );
-            Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(cell.write.command()))
-        })?;
-        if !is_stored {
+        if !cell.is(&read_back(self, &cell.write, &cell.read).await?) {
             return Err(Failure::new(
                 Kind::Malformed,
                 format!("the controller accepted {}, but the stored value differs", cell.write.text()),
@@ -105,17 +96,13 @@ impl Link {
 
     /// Reads data that only some controllers have. Returns `None` if the request is refused twice. A busy controller
     /// also refuses, so a single refusal is not enough.
-    pub async fn read_if_present(&mut self, request: &Request) -> Result<Option<Record>, Failure> {
+    pub async fn read_if_present(&mut self, request: &Request) -> Result<Option<Record>> {
         for _ in 0..2 {
             if let Ok(content) = self.try_ask(request).await? {
                 return Ok(Some(content));
             }
         }
         Ok(None)
-    }
-    /// Whether a cell contains its new value.
-    async fn holds(&mut self, cell: &Cell) -> Result<bool, Failure> {
-        Ok(cell.is(&self.ask(&cell.read).await?))
     }
 }
 

@@ -7,7 +7,6 @@ use std::marker::PhantomData;
 use super::eeprom::{Cell, Cells, parameter_cell, parameter_sketch};
 use super::field_values::{Changes, NOT_IN_MANUAL, word};
 use super::item_reads::read_each;
-use super::link::{Link, Toyo, wrong};
 use super::number_arguments::Numbers;
 use crate::prelude::*;
 use armctl_controller::toyo::field::{self, Form};
@@ -40,27 +39,48 @@ pub trait Kind: Debug + Send + Sync + 'static {
     const IDS: Ids;
     /// Fields of a row, in the order of the protocol.
     const FIELDS: &'static [Field];
+    /// Whether a row of zeros counts as empty.
+    const ZERO_IS_BLANK: bool = false;
+    /// Id of the parameter whose rows the table has. A table of another command implements the functions that use it.
+    const TABLE: &'static str = "";
 
     /// Field of the row number.
-    fn key() -> &'static field::Field;
+    fn key() -> &'static field::Field {
+        &parameter(Self::TABLE).key.fields[0]
+    }
 
     /// Layout of the fields after the row number.
-    fn body() -> Layout;
+    fn body() -> Layout {
+        parameter(Self::TABLE).body()
+    }
 
     /// Request that reads a row.
-    fn read(row: i32) -> Result<Request, Failure>;
+    fn read(row: i32) -> Result<Request> {
+        Request::read_parameter(parameter(Self::TABLE), Some(row)).map_err(|error| wrong(&error))
+    }
 
     /// EEPROM cell of a row with these values.
-    fn cell(row: i32, values: Vec<Value>) -> Result<Cell, Failure>;
+    fn cell(row: i32, values: Vec<Value>) -> Result<Cell> {
+        row_cell(parameter(Self::TABLE), row, values)
+    }
 
     /// Block that writes a row. `?` stands for values that are kept.
-    fn sketch(row: i32, values: &[Option<Value>]) -> String;
+    fn sketch(row: i32, values: &[Option<Value>]) -> String {
+        parameter_sketch(parameter(Self::TABLE), Some(row), values)
+    }
 
     /// Converts a record to the values of a row.
     fn value(record: &Record) -> Self::Value;
+}
 
-    /// Whether a row of zeros counts as empty.
-    const ZERO_IS_BLANK: bool = false;
+fn parameter(id: &str) -> &'static Parameter {
+    Parameter::named(id).expect("every table is in the table of parameters")
+}
+
+/// EEPROM cell of a row of a parameter that is a table.
+pub fn row_cell(table: &'static Parameter, row: i32, values: Vec<Value>) -> Result<Cell> {
+    let values = std::iter::once(Value::Number(row)).chain(values).collect();
+    parameter_cell(table, values).map_err(|error| wrong(&error))
 }
 
 /// Help of commands that write to the EEPROM.
@@ -121,7 +141,7 @@ impl<K: Kind> Store for Rows<K> {
         row.to_string()
     }
 
-    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self> {
         Ok(Self::default())
     }
 
@@ -149,8 +169,8 @@ impl<K: Kind> Store for Rows<K> {
         unlisted(record)
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, rows: &[i32]) -> Result<Answers<Record>, Failure> {
-        let requests = rows.iter().copied().map(K::read).collect::<Result<Vec<Request>, Failure>>()?;
+    async fn read(&self, link: &mut Link, screen: &Screen, rows: &[i32]) -> Result<Answers<Record>> {
+        let requests = rows.iter().copied().map(K::read).collect::<Result<Vec<Request>>>()?;
         let what = format!("reading {}", K::WORDS.nouns[1]);
         Ok(Answers::of(read_each(link, screen, &what, &requests).await?))
     }
@@ -161,11 +181,11 @@ impl<K: Kind> EepromRow for Rows<K> {
         K::body()
     }
 
-    fn request(&self, row: i32) -> Result<Request, Failure> {
+    fn request(&self, row: i32) -> Result<Request> {
         K::read(row)
     }
 
-    fn cell(&self, row: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+    fn cell(&self, row: i32, values: Vec<Value>) -> Result<Cell> {
         K::cell(row, values)
     }
 
@@ -185,7 +205,7 @@ pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
     }
 
     /// Expands words of a command line. For example, the name of a file is replaced by the values in the file.
-    fn words(&self, words: &[String]) -> Result<Vec<String>, Failure> {
+    fn words(&self, words: &[String]) -> Result<Vec<String>> {
         Ok(words.to_vec())
     }
 
@@ -193,16 +213,16 @@ pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
     fn body(&self, key: Self::Key) -> Layout;
 
     /// Request that reads a row.
-    fn request(&self, key: Self::Key) -> Result<Request, Failure>;
+    fn request(&self, key: Self::Key) -> Result<Request>;
 
     /// EEPROM cell of a row with these values.
-    fn cell(&self, key: Self::Key, values: Vec<Value>) -> Result<Cell, Failure>;
+    fn cell(&self, key: Self::Key, values: Vec<Value>) -> Result<Cell>;
 
     /// Block that writes a row. `?` stands for values that are kept.
     fn sketch(&self, key: Self::Key, values: &[Option<Value>]) -> String;
 
     /// Checks that the values of a row are consistent.
-    fn check(&self, _key: Self::Key, _values: &[Value]) -> Result<(), Failure> {
+    fn check(&self, _key: Self::Key, _values: &[Value]) -> Result<()> {
         Ok(())
     }
 
@@ -233,7 +253,7 @@ macro_rules! writable {
         values.collect::<Result<_, _>>().map(Changes::of)
     }
 
-    fn typed(&self, key: Self::Key, words: &[String]) -> Result<Changes, Failure> {
+    fn typed(&self, key: Self::Key, words: &[String]) -> Result<Changes> {
         let what = as_requested(Self::WORDS.nouns[0], &Self::name(key));
         let changes = Changes::read(&what, &self.body(key), &self.letters(), &self.words(words)?)?;
         if let Some(values) = changes.whole() {
@@ -242,7 +262,7 @@ macro_rules! writable {
         Ok(changes)
     }
 
-    fn complete_draft(&self, key: Self::Key, changes: &Changes, old: Option<&Record>) -> Result<Record, Failure> {
+    fn complete_draft(&self, key: Self::Key, changes: &Changes, old: Option<&Record>) -> Result<Record> {
         let values = match (changes.whole(), old) {
             (Some(values), _) => values,
             (None, Some(old)) => changes.merged_with(old)?,
@@ -264,7 +284,7 @@ macro_rules! writable {
         order.into_iter().map(|index| vec![index]).collect()
     }
 
-    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<()> {
         let mut rows: Vec<&Row<Self>> = rows.iter().collect();
         rows.sort_by_key(|(key, _)| Self::rank(*key));
         for (key, changes) in rows {
@@ -273,7 +293,7 @@ macro_rules! writable {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<()> {
         for (key, _, new) in rows {
             let fields = self.body(*key).fields.len();
             let values = new.values()[new.values().len().saturating_sub(fields)..].to_vec();
@@ -321,59 +341,6 @@ fn plain(field: &field::Field, value: &Value) -> String {
     }
 }
 
-/// A table of parameters: T2, T3, T5.
-pub trait TableOf: Debug + Send + Sync + 'static {
-    /// See [`Kind::Value`].
-    type Value: Debug + Clone + Serialize + JsonSchema;
-    /// Id of the parameter.
-    const TABLE: &'static str;
-    /// See [`Kind::WORDS`].
-    const WORDS: TableWords;
-    /// See [`Kind::IDS`].
-    const IDS: Ids;
-    /// See [`Kind::FIELDS`].
-    const FIELDS: &'static [Field];
-
-    /// See [`Kind::value`].
-    fn value(record: &Record) -> Self::Value;
-}
-
-fn table<T: TableOf>() -> &'static Parameter {
-    Parameter::named(T::TABLE).expect("every table is in the table of parameters")
-}
-
-impl<T: TableOf> Kind for T {
-    type Value = T::Value;
-    const WORDS: TableWords = T::WORDS;
-    const IDS: Ids = T::IDS;
-    const FIELDS: &'static [Field] = T::FIELDS;
-
-    fn key() -> &'static field::Field {
-        &table::<T>().key.fields[0]
-    }
-
-    fn body() -> Layout {
-        table::<T>().body()
-    }
-
-    fn read(row: i32) -> Result<Request, Failure> {
-        Request::read_parameter(table::<T>(), Some(row)).map_err(|error| wrong(&error))
-    }
-
-    fn cell(row: i32, values: Vec<Value>) -> Result<Cell, Failure> {
-        let values = std::iter::once(Value::Number(row)).chain(values).collect();
-        parameter_cell(table::<T>(), values).map_err(|error| wrong(&error))
-    }
-
-    fn sketch(row: i32, values: &[Option<Value>]) -> String {
-        parameter_sketch(table::<T>(), Some(row), values)
-    }
-
-    fn value(record: &Record) -> T::Value {
-        T::value(record)
-    }
-}
-
 /// Table T2, the speed table.
 #[derive(Debug)]
 pub struct Speed;
@@ -394,7 +361,7 @@ pub struct TorqueRow {
     load: f64,
 }
 
-impl TableOf for Speed {
+impl Kind for Speed {
     type Value = f64;
     const TABLE: &'static str = "T2";
     const IDS: Ids = ids!("toyo.speed-table");
@@ -407,7 +374,7 @@ impl TableOf for Speed {
     }
 }
 
-impl TableOf for Accel {
+impl Kind for Accel {
     type Value = f64;
     const TABLE: &'static str = "T3";
     const IDS: Ids = ids!("toyo.accel-table");
@@ -424,7 +391,7 @@ impl TableOf for Accel {
     }
 }
 
-impl TableOf for Torque {
+impl Kind for Torque {
     type Value = TorqueRow;
     const TABLE: &'static str = "T5";
     const IDS: Ids = ids!("toyo.torque-table");

@@ -1,17 +1,13 @@
 //! `armctl explain toyo`: explanation of error codes and program instructions.
 
 use super::instructions::InstructionHelp;
-use crate::prelude::*;
-use armctl_controller::similar_word::nearest;
+use crate::prelude::basics::*;
 use armctl_controller::toyo::errors;
 use armctl_controller::toyo::table::Instruction;
 use armctl_controller::toyo::table::instructions::INSTRUCTIONS;
-use armctl_controller::user_input;
 use armctl_frame::face::explain::{self as face, Codes, Known};
-use armctl_frame::output::csv::RowsOf;
 use armctl_frame::robot::alarm::{Alarm, ExtraColumns, Kind, Source};
 use armctl_frame::settings::alarms::{Alarms, Origin};
-use armctl_frame::settings::target::Family;
 
 /// Error code of a Toyo controller, or an instruction of its programs
 #[derive(Debug, Args)]
@@ -66,7 +62,7 @@ impl face::Explain for Explain {
     type Report = Explanation;
     const ID: &'static str = "explain.toyo";
 
-    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Explanation, Failure> {
+    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Explanation> {
         let code = match self.subject {
             Subject::Code(code) => code,
             Subject::Instruction(row) => {

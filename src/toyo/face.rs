@@ -1,7 +1,5 @@
 //! Implementation of the family interface for `toyo`.
 
-use std::path::Path;
-
 use super::alarm;
 use super::backup::{back_up, restore};
 use super::commands::Commands;
@@ -9,7 +7,6 @@ use super::control_commands::Stop;
 use super::decode::Decode;
 use super::explain::Explain;
 use super::instructions;
-use super::link::{Link, Toyo};
 use super::serve::Serve;
 use super::top::Poller;
 use super::{check, connect, overview, teach_panel};
@@ -18,16 +15,9 @@ use armctl_controller::toyo::table::instructions::INSTRUCTIONS;
 use armctl_controller::toyo::{errors, read_only_filter, simulator};
 use armctl_frame::backup::family_backup::Backups;
 use armctl_frame::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
-use armctl_frame::face::HeldLink;
-use armctl_frame::face::layers::Layer;
-use armctl_frame::face::overview::OverviewReport;
-use armctl_frame::face::registration::Declaration;
-use armctl_frame::face::sample::Traffic;
-use armctl_frame::face::teach_panel::Panel;
+use armctl_frame::face::{Declaration, HeldLink, Layer, OverviewReport, Panel, Traffic, Work};
 use armctl_frame::robot::alarm::Alarm;
-use armctl_frame::settings::target::Family;
 use armctl_transport::session::host::Guard;
-use armctl_transport::session::host::shared_link::SharedLink;
 
 impl Declaration for Toyo {
     type Commands = Commands;
@@ -53,20 +43,21 @@ impl Declaration for Toyo {
     const PANEL: Panel = teach_panel::PANEL;
     const GUARD: Guard =
         Guard { is_harmless_data: read_only_filter::only_reads_or_stops, is_harmless_image: |_, _| false };
+    const DISSECTOR: fn() -> String = super::wireshark::dissector;
+    const TWIN: fn(&Path) -> Result<Self::Start> = super::backup::twin::start;
+    const ALARMS: fn(&mut Link) -> Work<'_, Vec<Alarm>> = |link| alarm::present_alarms(link).boxed_local();
+    const TRAFFIC: fn(&Link) -> Traffic = Link::traffic;
+    const OVERVIEW: fn(&mut Link) -> Work<'_, OverviewReport> = |link| overview::overview(link).boxed_local();
+    const CHECK: for<'a> fn(&'a Robot, Access, &'a Screen) -> Work<'a, Vec<Layer>> =
+        |robot, access, screen| check::check(robot, access, screen).boxed_local();
+    const OPEN_SESSION_LINK: for<'a> fn(&'a Robot, &'a Access, &'a Screen) -> Work<'a, HeldLink> =
+        |robot, access, screen| connect::open_session_link(robot, access, screen).boxed_local();
 
     fn urls() -> Vec<(String, &'static str)> {
         vec![
             ("serial://".to_owned(), "toyo: a port of this machine, such as serial:///dev/ttyUSB0 or serial://COM3"),
             ("tcp://".to_owned(), "toyo: HOST:PORT of a serial device server"),
         ]
-    }
-
-    fn twin(folder: &Path) -> Result<Self::Start, Failure> {
-        super::backup::twin::start(folder)
-    }
-
-    fn dissector() -> String {
-        super::wireshark::dissector()
     }
 
     fn codes() -> Vec<(String, String)> {
@@ -81,26 +72,6 @@ impl Declaration for Toyo {
     fn stop_command() -> Self::Stop {
         Stop::everything()
     }
-
-    async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
-        alarm::present_alarms(link).await
-    }
-
-    fn traffic(link: &Link) -> Traffic {
-        link.traffic()
-    }
-
-    async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
-        overview::overview(link).await
-    }
-
-    async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
-        check::check(robot, access, screen).await
-    }
-
-    async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
-        Ok(SharedLink::Stream(connect::open_session_link(robot, access, screen).await?).into())
-    }
 }
 
 impl Backups for Toyo {
@@ -111,7 +82,7 @@ impl Backups for Toyo {
         if robot.read_only.value { Risk::Read } else { Self::BACKUP_RISK }
     }
 
-    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport> {
         let current_task = context.robot.read_only.value;
         if current_task {
             context.screen.note(&format!(
@@ -123,7 +94,7 @@ impl Backups for Toyo {
         back_up(context, making, current_task).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport> {
         restore(context, restoring).await
     }
 }

@@ -8,7 +8,6 @@ use std::ops::Range;
 use serde_json::Value as Json;
 
 use crate::prelude::*;
-use armctl_controller::similar_word::nearest;
 use armctl_controller::toyo::field::{Field, Form, Number};
 use armctl_controller::toyo::layout::{Layout, UNLISTED};
 use armctl_frame::store::comma_hint;
@@ -194,7 +193,7 @@ impl Changes {
     /// Parses the values for a layout: all values in order, or some as `name=value`. `what` names the record in errors.
     /// Coordinates have these letters. If the letters are not the usual letters, coordinates need names, because their
     /// order could mean letters or axes.
-    pub fn read(what: &str, layout: &Layout, letters: &Letters, typed: &[String]) -> Result<Self, Failure> {
+    pub fn read(what: &str, layout: &Layout, letters: &Letters, typed: &[String]) -> Result<Self> {
         let slots = slots(layout, letters);
         let wrong = |error: String| Failure::usage(format!("{what}: {error}"));
         let wrong_slot = |error: String| wrong(error).hint(usage(&slots, layout));
@@ -254,7 +253,7 @@ impl Changes {
     ///
     /// # Errors
     /// If an unchanged value cannot be written again.
-    pub fn merged_with(&self, stored: &Record) -> Result<Vec<Value>, Failure> {
+    pub fn merged_with(&self, stored: &Record) -> Result<Vec<Value>> {
         // The numbers of rows and programs come before the values.
         let keys = stored.values().len().saturating_sub(self.0.len());
         let unchanged_values = stored.pairs().skip(keys).zip(&self.0).filter(|(_, change)| change.is_none());
@@ -377,7 +376,6 @@ fn usage(slots: &[ValueSlot], layout: &Layout) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_controller::toyo::table::Parameter;
 
     fn body(name: &str) -> Layout {
         Parameter::named(name).unwrap().body()

@@ -1,8 +1,5 @@
 //! Tests of every command: its risk, a missing confirmation, and whether a dry run shows the blocks that are sent.
 
-use std::collections::BTreeSet;
-use std::time::Duration;
-
 use serde_json::Value;
 
 use super::testing::{Bench, Fault, ReceivedBlocks, gate_input, plan, text};

@@ -1,6 +1,5 @@
 //! `toyo home`: return to the origin.
 
-use super::link::{Link, Toyo};
 use super::position::{Coordinates, UNIT, titled};
 use super::wait::{AcceptedWork, Work};
 use crate::prelude::*;
@@ -49,7 +48,7 @@ impl Command for Home {
         }
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<HomeReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<HomeReport> {
         let Context { link, screen, confirmer, .. } = context;
         let (order, accepted) = self.order();
         let letters = link.letters().await?;
@@ -68,7 +67,7 @@ impl Command for Home {
 }
 
 /// Adds the current position of each axis to the change. A busy controller may refuse to report it.
-async fn from_where(link: &mut Link, change: Change, letters: Letters) -> Result<Change, Failure> {
+async fn from_where(link: &mut Link, change: Change, letters: Letters) -> Result<Change> {
     let coordinates = match link.read_position().await {
         Ok(record) => Coordinates::of(&record, letters),
         Err(failure) if failure.kind == Kind::Refused => {

@@ -1,7 +1,6 @@
 //! Command `toyo host on|off`: takes or releases host control.
 
 use super::control_commands::no_effect;
-use super::link::Toyo;
 use super::wait::wait_for_status;
 use crate::prelude::*;
 use armctl_frame::settings_report::Switch;
@@ -22,7 +21,7 @@ impl Command for Host {
     const ID: &'static str = "toyo.host";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport> {
         let (command, is_on, done) = match self.to {
             Switch::On => (table::Command::Hson, true, "the host has control; the start input is disabled"),
             Switch::Off => (table::Command::Hsof, false, "the start input has control; the host is OFF"),

@@ -1,7 +1,5 @@
 //! `toyo info`: type and versions of the controller.
 
-use super::link::Link;
-use super::link::Toyo;
 use super::number_arguments::saturated_byte;
 use crate::prelude::*;
 
@@ -19,7 +17,7 @@ impl Command for Info {
     type Report = About;
     const ID: &'static str = "toyo.info";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<About, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<About> {
         let link = context.link;
         let system = Request::bare(table::Command::Sysp);
         let version = |station: u8| Request::of(table::Command::Cver, [Value::Number(station.into())]);
@@ -40,7 +38,7 @@ impl Command for Info {
 }
 
 /// Reads the version of the controller.
-pub(super) async fn version(link: &mut Link) -> Result<String, Failure> {
+pub(super) async fn version(link: &mut Link) -> Result<String> {
     Ok(meaning(&link.ask(&Request::bare(table::Command::Sysp)).await?, "version"))
 }
 

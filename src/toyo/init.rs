@@ -1,15 +1,8 @@
 //! `toyo init`: clears memory.
 
-use std::time::Duration;
-
-use clap::ValueEnum;
-
-use super::link::Link;
-use super::link::Toyo;
 use super::task;
 use super::wait::status_page;
 use crate::prelude::*;
-use armctl_frame::dry_run::unknown;
 
 /// Clear memory. Only a backup can restore the cleared memory.
 #[derive(Debug, Args)]
@@ -74,7 +67,7 @@ impl Command for Init {
         Confirmation::Word(self.what.row().0)
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<ClearReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<ClearReport> {
         let Context { link, screen, .. } = context;
         let (name, number, words) = self.what.row();
         let clear = Request::of(table::Command::Mint, [Value::Word(number)]);
@@ -89,7 +82,7 @@ impl Command for Init {
 const POLL_INTERVAL: Duration = Duration::from_millis(200);
 
 /// Waits until the controller has completed the work that it accepted (ambiguity A3).
-async fn wait_until_cleared(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
+async fn wait_until_cleared(link: &mut Link, screen: &Screen) -> Result<Status> {
     if link.is_dry_run() {
         link.plan(&status_page(0), "every 200 ms until the memory is cleared");
         return Err(unknown());

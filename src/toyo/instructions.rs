@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::toyo::field::{Field, Form, Number};
 use armctl_controller::toyo::table::Instruction;
 use armctl_controller::toyo::table::instructions::{INSTRUCTIONS, SECTION};
@@ -151,7 +151,6 @@ mod tests {
     use super::*;
     use armctl_controller::toyo::program::check;
     use armctl_frame::output::render;
-    use armctl_frame::output::view::View;
 
     #[test]
     fn every_example_is_an_instruction_of_its_row() {

@@ -2,20 +2,19 @@
 //! answers.
 
 use super::eeprom::STORED_VALUE;
-use super::link::{Link, Refusal};
+use super::link::Refusal;
 use super::refusal;
 use crate::prelude::*;
-use armctl_frame::dry_run::unknown;
 
 /// The answer or the failure of each request.
-pub type Answers = Vec<Result<Record, Failure>>;
+pub type Answers = Vec<Result<Record>>;
 
 /// Reads items in order. Each item has its own result. After a lost connection, the remaining items are not read. A dry
 /// run records all requests and ends.
 ///
 /// # Errors
 /// The first failure, if no item was answered.
-pub async fn read_each(link: &mut Link, screen: &Screen, what: &str, requests: &[Request]) -> Result<Answers, Failure> {
+pub async fn read_each(link: &mut Link, screen: &Screen, what: &str, requests: &[Request]) -> Result<Answers> {
     read(link, screen, what, requests, 1, |_| false).await
 }
 
@@ -29,7 +28,7 @@ pub async fn read_until(
     what: &str,
     requests: &[Request],
     is_last: impl Fn(&Record) -> bool,
-) -> Result<Answers, Failure> {
+) -> Result<Answers> {
     read(link, screen, what, requests, 1, is_last).await
 }
 
@@ -42,7 +41,7 @@ pub async fn read_each_with_retry(
     screen: &Screen,
     what: &str,
     requests: &[Request],
-) -> Result<Answers, Failure> {
+) -> Result<Answers> {
     read(link, screen, what, requests, 2, |_| false).await
 }
 
@@ -53,7 +52,7 @@ async fn read(
     requests: &[Request],
     times: u8,
     is_last: impl Fn(&Record) -> bool,
-) -> Result<Answers, Failure> {
+) -> Result<Answers> {
     if times > 1 && link.is_dry_run() {
         for request in requests {
             plan_retry(link, request);
@@ -107,7 +106,7 @@ pub fn plan_retry(link: &mut Link, request: &Request) {
 }
 
 /// Answer to one request, or the reason why there is none. A failure ends the whole work.
-async fn outcome(link: &mut Link, request: &Request, times: u8) -> Result<Result<Record, Failure>, Failure> {
+async fn outcome(link: &mut Link, request: &Request, times: u8) -> Result<Result<Record>> {
     for _ in 1..times {
         match link.try_ask(request).await {
             Ok(Err(_)) => {}
@@ -123,7 +122,7 @@ async fn outcome(link: &mut Link, request: &Request, times: u8) -> Result<Result
 }
 
 /// Returns a failure as a result if it concerns only one request, otherwise as an error.
-fn as_item_result(failure: Failure) -> Result<Result<Record, Failure>, Failure> {
+fn as_item_result(failure: Failure) -> Result<Result<Record>> {
     if matches!(failure.kind, Kind::NoAnswer | Kind::Malformed) { Ok(Err(failure)) } else { Err(failure) }
 }
 

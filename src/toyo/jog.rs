@@ -1,23 +1,18 @@
 //! `toyo jog`: moves one axis for a time or by inching steps. The stop is always sent at the end.
 
 use std::convert::Infallible;
-use std::fmt;
 use std::sync::mpsc::{self, Sender};
-use std::time::Duration;
 
-use clap::ValueEnum;
 use tokio::time::{Instant, sleep, sleep_until, timeout_at};
 
 use super::field_values::machine;
-use super::link::Toyo;
-use super::link::{Link, MotionKind, jog};
+use super::link::{MotionKind, jog};
 use super::position::{Coordinates, UNIT, titled};
 use super::refusal;
 use super::wait::{POLL_INTERVAL, explain_present_error, position_request, status_page};
 use crate::prelude::*;
 use armctl_frame::robot::motion::Motion;
 use armctl_frame::robot::position::Position;
-use armctl_frame::settings::duration;
 
 /// Jog one axis, and stop it (TO 2-7, 3-2).
 ///
@@ -64,7 +59,7 @@ fn parse_axis(text: &str) -> Result<Axis, String> {
 
 impl Axis {
     /// Index of the axis, 0 to 3, on a machine with these letters.
-    fn index(&self, letters: Letters) -> Result<usize, Failure> {
+    fn index(&self, letters: Letters) -> Result<usize> {
         match self {
             Self::Index(index) => Ok(*index),
             Self::Letter(letter) => letters.axis(letter).ok_or_else(|| {
@@ -375,17 +370,14 @@ impl Command for Jog {
     const ID: &'static str = "toyo.jog";
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+    const JOGS: bool = true;
 
     fn intent(&self) -> String {
         self.in_words(&self.axis.to_string())
     }
 
-    fn jogs(&self) -> bool {
-        true
-    }
-
     /// Reads the letters of the axes first, because the user can name an axis by its letter.
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<JogReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<JogReport> {
         if self.within.is_some() && self.speed == Speed::Inch {
             return Err(Failure::usage("an inching step has no duration")
                 .hint("remove --for, or use --steps for several steps"));

@@ -4,7 +4,7 @@
 mod abandoned_changes;
 mod observer;
 
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 
 use derive_more::{Deref, DerefMut};
 
@@ -18,7 +18,7 @@ use super::refusal;
 use super::trace::Trace;
 use super::user_choices::UserChoices;
 use super::write_log::WriteLog;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_client::toyo::{Client, Error, Line, is_stop, status_page};
 pub use armctl_client::toyo::{MotionKind, Refusal, jog};
 use armctl_controller::toyo::request::Answer;
@@ -59,11 +59,11 @@ impl Family for Toyo {
     type Link = Link;
     const STOP: &'static [&'static str] = &["stop"];
 
-    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link> {
         Link::of(connect::open(robot, &access, screen).await?, robot, &access, screen)
     }
 
-    async fn halt(link: &mut Link) -> Result<String, Failure> {
+    async fn halt(link: &mut Link) -> Result<String> {
         let Some(moving) = link.moving() else { return Ok("no motion command was sent".to_owned()) };
         // The stop is sent before anything is printed, because a blocked terminal must not delay it.
         link.send_urgent(moving).await;
@@ -87,12 +87,12 @@ impl Family for Toyo {
         link.take_plan()
     }
 
-    async fn settle(link: &mut Link) -> Result<(), Failure> {
+    async fn settle(link: &mut Link) -> Result<()> {
         let settled = link.client.settle().await;
         settled.map_err(|error| link.failure(error))
     }
 
-    async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
+    async fn close(mut link: Link, screen: &Screen) -> Result<()> {
         link.report_abandoned_changes().await;
         let Link { client, observer, label, mut write_log, .. } = link;
         let (totals, closed) = client.close().await;
@@ -131,7 +131,7 @@ impl Link {
     }
 
     /// Creates a link from a client.
-    pub(super) fn of(mut client: Client, robot: &Robot, access: &Access, screen: &Screen) -> Result<Self, Failure> {
+    pub(super) fn of(mut client: Client, robot: &Robot, access: &Access, screen: &Screen) -> Result<Self> {
         let (target, label) = (robot.target.value.to_string(), robot.label());
         let has_files = !robot.target.value.is_simulated();
         let write_log = if has_files { WriteLog::of(&target) } else { WriteLog::without_file() };
@@ -156,7 +156,7 @@ impl Link {
     }
 
     /// Sends a request. A refusal is a failure.
-    pub async fn ask(&mut self, request: &Request) -> Result<Record, Failure> {
+    pub async fn ask(&mut self, request: &Request) -> Result<Record> {
         match self.try_ask(request).await? {
             Ok(record) => Ok(record),
             Err(Refusal(request)) => Err(refusal::with_reason(self, &request).await),
@@ -164,7 +164,7 @@ impl Link {
     }
 
     /// Sends a request. A refusal is a valid result.
-    pub async fn try_ask(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Failure> {
+    pub async fn try_ask(&mut self, request: &Request) -> Result<Result<Record, Refusal>> {
         self.report_abandoned_changes().await;
         self.before_steps_change(request);
         self.client.try_ask(request).await.map_err(|error| self.failure(error))
@@ -181,7 +181,7 @@ impl Link {
     }
 
     /// Sends a request unchanged, and returns the whole answer, even if it is a refusal.
-    pub async fn raw(&mut self, request: &Request) -> Result<Answer, Failure> {
+    pub async fn raw(&mut self, request: &Request) -> Result<Answer> {
         if !is_stop(request) {
             self.report_abandoned_changes().await;
         }
@@ -190,7 +190,7 @@ impl Link {
     }
 
     /// Sends a block that is not in the command table, and returns the answer.
-    pub async fn raw_text(&mut self, block: &str) -> Result<String, Failure> {
+    pub async fn raw_text(&mut self, block: &str) -> Result<String> {
         self.report_abandoned_changes().await;
         self.sources.mark_uncertain();
         self.client.raw_text(block).await.map_err(|error| self.failure(error))
@@ -198,7 +198,7 @@ impl Link {
 
     /// Reads the value that a write replaces. Returns `None` if the controller refuses to report it. A dry run records
     /// the request and returns `None`. If the line is lost, the failure states that nothing was written.
-    pub async fn before(&mut self, question: &Request) -> Result<Option<Record>, Failure> {
+    pub async fn before(&mut self, question: &Request) -> Result<Option<Record>> {
         if self.is_dry_run() {
             self.plan(question, OLD_VALUE);
             return Ok(None);
@@ -207,31 +207,31 @@ impl Link {
     }
 
     /// Reads one page of the status before a write. The other pages are 0.
-    pub async fn status_before(&mut self, page: u8) -> Result<Option<Status>, Failure> {
+    pub async fn status_before(&mut self, page: u8) -> Result<Option<Status>> {
         let record = self.before(&status_page(page)).await?;
         Ok(record.and_then(|record| record.byte("st1")).map(|byte| Status::default().with(page, byte)))
     }
 
     /// Reads all five pages of the status.
-    pub async fn status(&mut self) -> Result<Status, Failure> {
+    pub async fn status(&mut self) -> Result<Status> {
         self.status_of(&[0, 1, 2, 3, 4]).await
     }
 
     /// Reads some pages of the status. The other pages are 0.
-    pub async fn status_of(&mut self, pages: &[u8]) -> Result<Status, Failure> {
+    pub async fn status_of(&mut self, pages: &[u8]) -> Result<Status> {
         self.report_abandoned_changes().await;
         self.client.status_of(pages).await.map_err(|error| self.failure(error))
     }
 
     /// Reads the position of the axes. The reason for a refusal is not read, because this takes time, and the
     /// controller is only busy for a moment.
-    pub async fn read_position(&mut self) -> Result<Record, Failure> {
+    pub async fn read_position(&mut self) -> Result<Record> {
         self.report_abandoned_changes().await;
         self.client.read_position().await.map_err(|error| self.failure(error))
     }
 
     /// Reads the letters of the axes from the controller.
-    pub async fn letters(&mut self) -> Result<Letters, Failure> {
+    pub async fn letters(&mut self) -> Result<Letters> {
         self.report_abandoned_changes().await;
         self.client.letters().await.map_err(|error| self.failure(error))
     }
@@ -243,7 +243,7 @@ impl Link {
     }
 
     /// Changes a setting temporarily. [`Link::put_back`], or the end of the link, restores the setting with `back`.
-    pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<(), Failure> {
+    pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<()> {
         self.report_abandoned_changes().await;
         match self.client.borrow(change, back).await {
             Err(Error::Refused(Refusal(request))) => Err(refusal::with_reason(self, &request).await),
@@ -253,12 +253,12 @@ impl Link {
 
     /// Restores all settings that [`Link::borrow`] changed. If this fails for a setting, continues with the others and
     /// returns the first failure.
-    pub async fn put_back(&mut self) -> Result<(), Failure> {
+    pub async fn put_back(&mut self) -> Result<()> {
         self.client.put_back().await.map_err(|error| self.failure(error))
     }
 
     /// Stops the motion, and returns the position at rest.
-    pub async fn stop(&mut self, moving: MotionKind) -> Result<Record, Failure> {
+    pub async fn stop(&mut self, moving: MotionKind) -> Result<Record> {
         // Changes of earlier processes are reported after the stop.
         let printed = std::mem::replace(&mut lock_writer(&self.observer).printed, PrintedNotices::ALL);
         let stopped = self.client.stop(moving).await;
@@ -292,19 +292,19 @@ impl Link {
     }
 
     /// In a dry run, records requests. Their answers are not known.
-    pub fn plan_all(&mut self, requests: &[Request]) -> Result<(), Failure> {
+    pub fn plan_all(&mut self, requests: &[Request]) -> Result<()> {
         self.client.plan_all(requests).map_err(|error| self.failure(error))
     }
 
     /// In a dry run, records a command after the requests that precede every command. `on` is the earlier answer that
     /// determines whether the command is sent.
-    pub async fn plan_order(&mut self, text: &str, on: &str) -> Result<(), Failure> {
+    pub async fn plan_order(&mut self, text: &str, on: &str) -> Result<()> {
         self.client.plan_order(text, on).await.map_err(|error| self.failure(error))
     }
 
     /// In a dry run, records a temporary change. `back` restores the setting; `?` in it stands for the value that was
     /// read.
-    pub async fn plan_to_borrow(&mut self, change: &Request, back: &str, on: &str) -> Result<(), Failure> {
+    pub async fn plan_to_borrow(&mut self, change: &Request, back: &str, on: &str) -> Result<()> {
         self.client.plan_to_borrow(change, back, on).await.map_err(|error| self.failure(error))
     }
 

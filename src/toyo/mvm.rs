@@ -1,10 +1,9 @@
 //! `toyo mvm`: groups of the MVM table. A group has five sheets: corners, pieces, counters, approach and destination.
 
 use super::eeprom::{Cells, parameter_cell, parameter_sketch};
-use super::eeprom_tables::{Listed, WRITING, texts, unlisted};
+use super::eeprom_tables::{Listed, WRITING, row_cell, texts, unlisted};
 use super::field_values::{Changes, word};
 use super::item_reads::read_each;
-use super::link::{Link, Toyo, wrong};
 use super::number_arguments::Numbers;
 use crate::prelude::*;
 use armctl_controller::toyo::field;
@@ -67,7 +66,7 @@ fn field() -> field::Field {
 }
 
 /// Requests that read the sheets of a group.
-fn reads(group: i32) -> Result<Vec<Request>, Failure> {
+fn reads(group: i32) -> Result<Vec<Request>> {
     let read = |index| Request::read_parameter(sheet(index), Some(group));
     (0..SHEETS.len()).map(read).collect::<Result<_, _>>().map_err(|error| wrong(&error))
 }
@@ -149,7 +148,7 @@ impl Store for Groups {
         group.to_string()
     }
 
-    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self> {
         Ok(Self)
     }
 
@@ -192,12 +191,11 @@ impl Store for Groups {
         sheets.and_then(|sheets| sheets.iter().find_map(|sheet| unlisted(Some(sheet))))
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, groups: &[i32]) -> Result<Answers<Vec<Record>>, Failure> {
-        let requests = groups.iter().copied().map(reads).collect::<Result<Vec<Vec<Request>>, Failure>>()?.concat();
+    async fn read(&self, link: &mut Link, screen: &Screen, groups: &[i32]) -> Result<Answers<Vec<Record>>> {
+        let requests = groups.iter().copied().map(reads).collect::<Result<Vec<Vec<Request>>>>()?.concat();
         let sheets = read_each(link, screen, "reading sheets", &requests).await?;
         // If a sheet is refused, the whole group fails with the first refusal.
-        let whole =
-            |sheets: &[Result<Record, Failure>]| sheets.iter().cloned().collect::<Result<Vec<Record>, Failure>>();
+        let whole = |sheets: &[Result<Record>]| sheets.iter().cloned().collect::<Result<Vec<Record>>>();
         Ok(Answers::of(sheets.chunks(SHEETS.len()).map(whole).collect()))
     }
 }
@@ -220,12 +218,7 @@ impl Writable for Groups {
         Ok(sheets)
     }
 
-    fn complete_draft(
-        &self,
-        group: i32,
-        draft: &Vec<Changes>,
-        old: Option<&Vec<Record>>,
-    ) -> Result<Vec<Record>, Failure> {
+    fn complete_draft(&self, group: i32, draft: &Vec<Changes>, old: Option<&Vec<Record>>) -> Result<Vec<Record>> {
         let record = |(index, changes): (usize, &Changes)| {
             let values = match (changes.whole(), old) {
                 (Some(values), _) => values,
@@ -237,13 +230,12 @@ impl Writable for Groups {
                     return Err(Failure::usage(message).hint("type all values; nothing was written"));
                 }
             };
-            let values = std::iter::once(Value::Number(group)).chain(values).collect();
-            Ok(parameter_cell(sheet(index), values).map_err(|error| wrong(&error))?.wanted)
+            Ok(row_cell(sheet(index), group, values)?.wanted)
         };
         draft.iter().enumerate().map(record).collect()
     }
 
-    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<()> {
         for (group, draft) in rows {
             let reads = reads(*group)?;
             // A copy does not keep old values.
@@ -258,7 +250,7 @@ impl Writable for Groups {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<()> {
         for (_, old, new) in rows {
             let differs = |(index, new): &(usize, &Record)| old.is_none_or(|old| old[*index] != **new);
             for (index, record) in new.iter().enumerate().filter(differs) {

@@ -2,12 +2,10 @@
 
 use super::link::Link;
 use super::refusal;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::names::Kind as NameKind;
 use armctl_controller::toyo::field::{Field, Form};
 use armctl_controller::toyo::names as names_of;
-use armctl_controller::user_input;
-use armctl_frame::names;
 
 /// A number or a range: `5`, `1-5`, `1..5`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -57,12 +55,7 @@ pub fn saturated_byte(record: &Record, name: &str) -> u8 {
 }
 
 /// Reads several values in order. The first refusal or failure ends the work. A dry run records all requests.
-pub async fn ask_all(
-    link: &mut Link,
-    screen: &Screen,
-    what: &str,
-    requests: &[Request],
-) -> Result<Vec<Record>, Failure> {
+pub async fn ask_all(link: &mut Link, screen: &Screen, what: &str, requests: &[Request]) -> Result<Vec<Record>> {
     link.plan_all(requests)?;
     let mut progress = (requests.len() > 1).then(|| screen.items_progress(what, requests.len() as u64));
     let mut answers = Vec::with_capacity(requests.len());
@@ -76,7 +69,7 @@ pub async fn ask_all(
 }
 
 /// Reads a value back after a command. A dry run records the request.
-pub async fn read_back(link: &mut Link, order: &Request, read: &Request) -> Result<Record, Failure> {
+pub async fn read_back(link: &mut Link, order: &Request, read: &Request) -> Result<Record> {
     link.ask(read).await.map_err(|failure| {
         let message = format!(
             "the controller accepted {}, but the value could not be read back: {}",

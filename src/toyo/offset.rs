@@ -1,6 +1,5 @@
 //! `toyo offset`: current offset of coordinates.
 
-use super::link::Toyo;
 use super::position::Coordinates;
 use crate::prelude::*;
 
@@ -13,7 +12,7 @@ impl Command for Offset {
     type Report = Coordinates;
     const ID: &'static str = "toyo.offset";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Coordinates, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Coordinates> {
         let letters = context.link.letters().await?;
         let record = context.link.ask(&Request::bare(table::Command::Moff)).await?;
         Ok(Coordinates::of(&record, letters))

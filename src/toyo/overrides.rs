@@ -1,8 +1,6 @@
 //! `toyo override`: speed override of programs.
 
 use super::eeprom::{Cell, Cells};
-use super::link::Toyo;
-use super::link::wrong;
 use super::number_arguments::{number, saturated_byte};
 use crate::prelude::*;
 use armctl_controller::toyo::field::Field;
@@ -51,7 +49,7 @@ impl Command for Get {
     type Report = Items<u8>;
     const ID: &'static str = "toyo.override.get";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Items<u8>, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Items<u8>> {
         let answer = context.link.ask(&Request::bare(table::Command::Rovr)).await?;
         let columns = Columns { name: "override", values: vec!["percent"], empty: "nothing stored" };
         Ok(Items::new(columns, vec![item(saturated_byte(&answer, field().name))]))
@@ -64,7 +62,7 @@ impl Command for Set {
     const ID: &'static str = "toyo.override.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<WrittenItems<u8>, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<WrittenItems<u8>> {
         let value = Value::Number(self.percent);
         let wanted = table::Command::Rovr.row().answers[0].record(vec![value.clone()]);
         let cell = Cell {

@@ -3,14 +3,14 @@
 use super::link::Link;
 use super::position::Coordinates;
 use super::top::alarms;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::toyo::status::RunMode;
 use armctl_controller::toyo::table::Command;
 use armctl_frame::face::overview::{LeftOver, OverviewReport};
 use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
 
 /// Reads status and position.
-pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
+pub async fn overview(link: &mut Link) -> Result<OverviewReport> {
     let status = link.status_of(&[0, 1, 2, 3]).await?;
     let letters = link.letters().await?;
     let coordinates = Coordinates::of(&link.ask(&Request::bare(Command::Mpst)).await?, letters);

@@ -1,8 +1,6 @@
 //! `toyo ports`: serial ports of this computer.
 
-use anyhow::Context as _;
-
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::OfflineCommand;
 use armctl_transport::port_list::{self, PortInfo, PortKind, PortUser};
 
@@ -31,13 +29,13 @@ impl OfflineCommand for Ports {
     type Report = List;
     const ID: &'static str = "toyo.ports";
 
-    fn run(&self, _screen: &Screen) -> Result<List, Failure> {
+    fn run(&self, _screen: &Screen) -> Result<List> {
         Ok(List { ports: all()? })
     }
 }
 
 /// Serial ports of this computer.
-pub fn all() -> Result<Vec<Port>, Failure> {
+pub fn all() -> Result<Vec<Port>> {
     let ports = port_list::ports().context("the list of serial ports")?;
     Ok(ports.into_iter().map(Port::from).collect())
 }

@@ -1,7 +1,7 @@
 //! `toyo position`: current position of the axes.
 
 use super::link::Toyo;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::plot::SeriesHistory;
 use armctl_frame::robot::position::{self as robot, Positions};
 
@@ -20,7 +20,7 @@ impl Command for Position {
     type Report = Positions;
     const ID: &'static str = "toyo.position";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Positions, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Positions> {
         let link = context.link;
         let letters = link.letters().await?;
         let record = link.ask(&Request::bare(table::Command::Mpst)).await?;

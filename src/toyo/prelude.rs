@@ -1,9 +1,8 @@
 //! Names that almost every command of this family uses.
 
-pub use armctl_client::toyo::Letters;
-pub use armctl_controller::toyo::field::Value;
-pub use armctl_controller::toyo::layout::Record;
-pub use armctl_controller::toyo::request::Request;
-pub use armctl_controller::toyo::status::Status;
-pub use armctl_controller::toyo::table::{self, Parameter};
-pub use armctl_frame::prelude::*;
+pub mod basics;
+
+pub use self::basics::*;
+pub(crate) use crate::link::{Link, Toyo, wrong};
+pub(crate) use crate::program::steps;
+pub(crate) use crate::{complete, task_selection};

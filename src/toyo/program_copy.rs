@@ -2,13 +2,10 @@
 
 use super::eeprom::{Cells, is_blank};
 use super::field_values::{NamedValue, in_a_line, named_values_with};
-use super::link::Link;
 use super::number_arguments::ask_all;
 use super::refusal;
 use crate::prelude::*;
 use armctl_controller::toyo::table::palletizing::RECORDS;
-use armctl_frame::confirmation::Confirmer;
-use armctl_frame::dry_run::unknown;
 
 /// A program copy, and the requests that read source and target.
 #[derive(Debug)]
@@ -27,7 +24,7 @@ pub struct Copy {
 
 impl Copy {
     /// Copies the program after a confirmation, if source and target differ. Then reads the target back.
-    pub async fn make(self, link: &mut Link, screen: &Screen, confirmer: &Confirmer<'_>) -> Result<Copied, Failure> {
+    pub async fn make(self, link: &mut Link, screen: &Screen, confirmer: &Confirmer<'_>) -> Result<Copied> {
         let Self { what, from, to, order, reads: [source, target] } = self;
         if from == to {
             return Err(

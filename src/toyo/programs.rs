@@ -3,8 +3,6 @@
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
-use super::link;
-use super::link::Toyo;
 use super::number_arguments::{number, read_back, read_back_mismatch};
 use super::program_copy::{self, Copied};
 use crate::prelude::*;
@@ -14,21 +12,27 @@ use armctl_controller::toyo::field::Field;
 pub trait Kind: Debug + 'static {
     /// Name of the type, such as `easy program`.
     const TYPE_NAME: &'static str;
-    /// Names of the reports, such as `toyo.easy.copy` and `toyo.easy.select`.
-    const IDS: [&'static str; 2];
+    /// Word of the type in `toyo run`.
+    const WORD: &'static str;
+    /// Names of the reports of `copy`, `select` and `run`.
+    const IDS: [&'static str; 3];
+    /// Number of programs.
+    const COUNT: i64;
     /// Text for a copy that completes "This will …".
     const INTENT: &'static str;
     /// Help texts for the source, the target, and the selected program.
     const HELP: [&'static str; 3];
     /// Command that starts the selected program.
     const RUN: &'static str;
-    /// Protocol commands that copy a program, select a program, and report the selected program.
-    const COMMANDS: [table::Command; 3];
+    /// Protocol commands that copy a program, select a program, report the selected program, and start it.
+    const COMMANDS: [table::Command; 4];
+    /// Additional help of `toyo run`.
+    const RUN_HELP: Option<&'static str> = None;
 
     /// Field of the program number.
     fn field() -> &'static Field;
     /// Requests that read a whole program.
-    fn reads(program: i32) -> Result<Vec<Request>, Failure>;
+    fn reads(program: i32) -> Result<Vec<Request>>;
 }
 
 /// Copy a program to another number, if the two programs differ.
@@ -59,10 +63,10 @@ impl<K: Kind> Command for Copy<K> {
     const INTENT: &'static str = K::INTENT;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied> {
         let Self { from, to, .. } = *self;
         let order = Request::new(K::COMMANDS[0], vec![Value::Number(from), Value::Number(to)]);
-        let order = order.map_err(|error| link::wrong(&error))?;
+        let order = order.map_err(|error| wrong(&error))?;
         let copy = program_copy::Copy { what: K::TYPE_NAME, from, to, order, reads: [K::reads(from)?, K::reads(to)?] };
         copy.make(context.link, context.screen, &context.confirmer).await
     }
@@ -74,7 +78,7 @@ impl<K: Kind> Command for Select<K> {
     const ID: &'static str = K::IDS[1];
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport> {
         let (link, order) = (context.link, Request::of(K::COMMANDS[1], [Value::Number(self.program)]));
         let selection_read = Request::bare(K::COMMANDS[2]);
         let old = Old::read(link.before(&selection_read).await?.and_then(|record| record.number("program")));

@@ -1,9 +1,7 @@
 //! `toyo raw`: sends any block and explains the answer.
 
 use super::decode::FieldRow;
-use super::link::Link;
 use super::number_arguments::saturated_byte;
-use crate::link::Toyo;
 use crate::prelude::*;
 use armctl_controller::toyo::describe::{Sender, describe};
 use armctl_controller::toyo::request::{Answer, BlockError};
@@ -71,7 +69,7 @@ impl Command for Raw {
         format!("send {} ({about})", self.block.text())
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Exchange, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Exchange> {
         let link = context.link;
         let answer = match &self.block {
             Block::Known(request) => {

@@ -1,7 +1,7 @@
 //! Explanation of a refusal. `@NG` has no code, so the reason must be read from the status.
 
 use super::link::Link;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::toyo::errors;
 use armctl_controller::toyo::status::{ProgramKind, RunMode};
 use armctl_controller::toyo::table::commands::{Command, Row};
@@ -198,7 +198,6 @@ pub fn verification_hint(command: Command) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_controller::toyo::field::Value;
 
     #[test]
     fn the_status_gives_the_reason_of_a_refusal() {

@@ -1,10 +1,8 @@
 //! `toyo robot-type`: robot type of an axis.
 
-use super::link::Toyo;
 use super::number_arguments::number;
 use crate::prelude::*;
 use armctl_controller::toyo::field::Field;
-use armctl_frame::dry_run::unknown;
 
 /// Set the robot type of an axis. The type determines the parameters of the axis.
 #[derive(Debug, Args)]
@@ -39,7 +37,7 @@ impl Command for RobotType {
         Confirmation::Word("type")
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<RobotTypeReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<RobotTypeReport> {
         let Self { axis, robot_type } = *self;
         let order = Request::of(table::Command::Type, [Value::Number(axis), Value::Number(robot_type)]);
         let Some(answer) = context.link.ask(&order).await.known()? else {

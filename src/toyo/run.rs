@@ -1,24 +1,20 @@
 //! `toyo run`: start of programs, and moves to a point.
 
-use std::time::Duration;
+use std::marker::PhantomData;
 
-use super::complete;
-use super::link::{self, Link, Toyo};
 use super::number_arguments::saturated_byte;
 use super::point::{parse_point, table as point_table};
 use super::position::{Coordinates, UNIT, titled};
-use super::program::steps;
-use super::task_selection;
+use super::programs::Kind as ProgramKind;
 use super::wait::{AcceptedWork, End, Work, step};
+use super::{easy, palletizing};
 use crate::prelude::*;
 use armctl_controller::toyo::status::RunMode;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::gate::data_changed;
 use armctl_frame::repeated_runs::{Repeat, Runs};
 use armctl_frame::robot::motion::Motion;
 use armctl_frame::robot::position::Position;
 use armctl_frame::robot::program::{self as robot, ProgramState};
-use armctl_frame::settings::duration;
 use armctl_frame::wait_arguments::{MotionEnd, ProgramEnd};
 
 commands! {
@@ -27,9 +23,9 @@ commands! {
         /// Start the sequential program
         Sequential(Sequential),
         /// Start palletizing
-        Palletizing(Palletizing),
+        Palletizing(Numbered<palletizing::Numbered>),
         /// Start the easy program
-        Easy(Easy),
+        Easy(Numbered<easy::Numbered>),
         /// Move to a row of the coordinate table
         Point(Point),
     }
@@ -64,7 +60,7 @@ impl Command for Sequential {
         }
     }
 
-    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
+    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport> {
         if self.repeat.repeat.is_some() && self.step.is_none() {
             return Err(Failure::usage("--repeat needs the first step of each run")
                 .hint("type the step, for example `toyo run sequential 1 --repeat 20`; nothing was started"));
@@ -75,76 +71,48 @@ impl Command for Sequential {
     }
 }
 
-/// Start palletizing, or continue palletizing after a stop (TO 2-7).
+/// Start palletizing or the easy program, or continue after a stop (TO 2-7).
 #[derive(Debug, Args)]
-pub struct Palletizing {
+#[command(after_help = K::RUN_HELP)]
+pub struct Numbered<K: ProgramKind> {
     /// Program to select first [default: the current program]
-    #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=16))]
+    #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=K::COUNT))]
     number: Option<i32>,
     /// Program to select before the start, the same as NUMBER
-    #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=16))]
+    #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=K::COUNT))]
     program: Option<i32>,
     #[command(flatten)]
     end: ProgramEnd,
     #[command(flatten)]
     repeat: Repeat,
+    #[arg(skip)]
+    of: PhantomData<K>,
 }
 
-impl Command for Palletizing {
+impl<K: ProgramKind> Command for Numbered<K> {
     type Family = Toyo;
     type Report = RunReport;
-    const ID: &'static str = "toyo.run.palletizing";
+    const ID: &'static str = K::IDS[2];
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
-        format!("run {}{}", program_text("palletizing", self.number.or(self.program)), self.repeat.describe())
+        let program = match self.number.or(self.program) {
+            Some(number) => format!("{} {number}", K::TYPE_NAME),
+            None => format!("the last selected {}", K::TYPE_NAME),
+        };
+        format!("run {program}{}", self.repeat.describe())
     }
 
-    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
+    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport> {
         let program = self.number.or(self.program);
-        confirm_start(&mut context, Change::new(self.intent()), Program::Palletizing(program)).await?;
-        select_program(context.link, table::Command::Spln, program).await?;
-        let report =
-            start_and_wait(context, &Request::bare(table::Command::Ppst), self.end.limit(), self.repeat).await?;
-        Ok(report.of("palletizing", program))
-    }
-}
-
-/// Start the easy program, or continue it after a stop (TO 2-7).
-#[derive(Debug, Args)]
-#[command(after_help = "Parameter M10 selects easy mode: `armctl toyo param set M10 E`.")]
-pub struct Easy {
-    /// Program to select first [default: the current program]
-    #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=8))]
-    number: Option<i32>,
-    /// Program to select before the start, the same as NUMBER
-    #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=8))]
-    program: Option<i32>,
-    #[command(flatten)]
-    end: ProgramEnd,
-    #[command(flatten)]
-    repeat: Repeat,
-}
-
-impl Command for Easy {
-    type Family = Toyo;
-    type Report = RunReport;
-    const ID: &'static str = "toyo.run.easy";
-    const RISK: Risk = Risk::Motion;
-    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
-
-    fn intent(&self) -> String {
-        format!("run {}{}", program_text("easy", self.number.or(self.program)), self.repeat.describe())
-    }
-
-    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
-        let program = self.number.or(self.program);
-        confirm_start(&mut context, Change::new(self.intent()), Program::Easy(program)).await?;
-        select_program(context.link, table::Command::Sesn, program).await?;
-        let report =
-            start_and_wait(context, &Request::bare(table::Command::Sesy), self.end.limit(), self.repeat).await?;
-        Ok(report.of("easy", program))
+        let [_, select, progress, start] = K::COMMANDS;
+        confirm_start(&mut context, Change::new(self.intent()), Program::Numbered(K::WORD, progress, program)).await?;
+        if let Some(number) = program {
+            context.link.ask(&Request::of(select, [Value::Number(number)])).await?;
+        }
+        let report = start_and_wait(context, &Request::bare(start), self.end.limit(), self.repeat).await?;
+        Ok(report.of(K::WORD, program))
     }
 }
 
@@ -172,7 +140,7 @@ impl Command for Point {
         format!("move the axes to point {} of the coordinate table", self.point)
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<PointMoveReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<PointMoveReport> {
         let Context { link, confirmer, .. } = context;
         let (mut from, mut to) = (None, None);
         if confirmer.asks_user() {
@@ -230,19 +198,14 @@ impl Report for PointMoveReport {
 
 impl Point {
     /// Reads the position of the point; `None` if the controller refuses to report it.
-    async fn read_point(&self, link: &mut Link) -> Result<Option<Coordinates>, Failure> {
-        let request = Request::read_parameter(point_table(), Some(self.point)).map_err(|error| link::wrong(&error))?;
+    async fn read_point(&self, link: &mut Link) -> Result<Option<Coordinates>> {
+        let request = Request::read_parameter(point_table(), Some(self.point)).map_err(|error| wrong(&error))?;
         let letters = link.letters().await?;
         Ok(link.try_ask(&request).await?.ok().map(|record| Coordinates::of(&record, letters)))
     }
 
     /// Change to confirm: the current position and the target of each axis.
-    async fn change(
-        &self,
-        link: &mut Link,
-        current: Coordinates,
-        target: Option<Coordinates>,
-    ) -> Result<Change, Failure> {
+    async fn change(&self, link: &mut Link, current: Coordinates, target: Option<Coordinates>) -> Result<Change> {
         let letters = link.letters().await?;
         let percent = saturated_byte(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
         let mut change = Change::new(Command::intent(self));
@@ -265,13 +228,13 @@ impl Point {
 /// Program to start: at a step, with a number, or the current program.
 enum Program {
     Sequential(Option<i32>),
-    Palletizing(Option<i32>),
-    Easy(Option<i32>),
+    /// Word of the type, command that reports the progress, and number.
+    Numbered(&'static str, table::Command, Option<i32>),
 }
 
 impl Program {
     /// Describes the program and its step, for the confirmation.
-    async fn note(&self, link: &mut Link) -> Result<String, Failure> {
+    async fn note(&self, link: &mut Link) -> Result<String> {
         match self {
             Self::Sequential(step) => {
                 let task = task_selection::select_task(link, None).await?;
@@ -285,18 +248,13 @@ impl Program {
                     Err(_) => format!("It is the program of task {task}; the controller did not report the step."),
                 })
             }
-            Self::Palletizing(number) => progress(link, table::Command::Rpld, ("palletizing", *number)).await,
-            Self::Easy(number) => progress(link, table::Command::Resd, ("easy", *number)).await,
+            Self::Numbered(kind, question, number) => progress(link, *question, (kind, *number)).await,
         }
     }
 }
 
 /// Program and step that will start: `selected`, or the program and step that the controller reports.
-async fn progress(
-    link: &mut Link,
-    question: table::Command,
-    (kind, selected): (&str, Option<i32>),
-) -> Result<String, Failure> {
+async fn progress(link: &mut Link, question: table::Command, (kind, selected): (&str, Option<i32>)) -> Result<String> {
     let Ok(progress) = link.try_ask(&Request::bare(question)).await? else {
         let number = selected.map(|number| format!(" {number}")).unwrap_or_default();
         return Ok(format!("It is {kind} program{number}; the controller did not report the step."));
@@ -311,7 +269,7 @@ async fn progress(
 }
 
 /// Asks for confirmation. The question has the number and step of the program, the position and the speed.
-async fn confirm_start(context: &mut Context<'_, Toyo>, change: Change, program: Program) -> Result<(), Failure> {
+async fn confirm_start(context: &mut Context<'_, Toyo>, change: Change, program: Program) -> Result<()> {
     let Context { link, confirmer, .. } = context;
     let mut change = change;
     if confirmer.asks_user() {
@@ -325,20 +283,6 @@ async fn confirm_start(context: &mut Context<'_, Toyo>, change: Change, program:
     confirmer.confirm(&change).await
 }
 
-fn program_text(kind: &str, program: Option<i32>) -> String {
-    match program {
-        Some(number) => format!("{kind} program {number}"),
-        None => format!("the last selected {kind} program"),
-    }
-}
-
-async fn select_program(link: &mut Link, command: table::Command, program: Option<i32>) -> Result<(), Failure> {
-    match program {
-        Some(number) => link.ask(&Request::of(command, [Value::Number(number)])).await.map(|_| ()),
-        None => Ok(()),
-    }
-}
-
 /// Starts the program. If requested, waits for its end up to a time limit. A repetition begins only after the end was
 /// confirmed.
 #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
@@ -347,7 +291,7 @@ async fn start_and_wait(
     start: &Request,
     limit: Option<Option<Duration>>,
     repeat: Repeat,
-) -> Result<RunReport, Failure> {
+) -> Result<RunReport> {
     let Context { link, screen, .. } = context;
     let mut runs = Runs::new(repeat);
     // A repeated run must also wait for the end of the program.
@@ -380,10 +324,7 @@ async fn start_and_wait(
 }
 
 /// Waits for the end, up to a time limit. After the time limit, the program continues.
-async fn within(
-    limit: Option<Duration>,
-    end: impl Future<Output = Result<RunReport, Failure>>,
-) -> Result<RunReport, Failure> {
+async fn within(limit: Option<Duration>, end: impl Future<Output = Result<RunReport>>) -> Result<RunReport> {
     let Some(limit) = limit else { return end.await };
     tokio::time::timeout(limit, end).await.unwrap_or_else(|_| {
         let message = format!("{DONE}, and the program still runs after {}", duration::display(limit));
@@ -392,7 +333,7 @@ async fn within(
     })
 }
 
-async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: Letters) -> Result<RunReport, Failure> {
+async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: Letters) -> Result<RunReport> {
     let work = AcceptedWork { work: Work::Program, order, done: DONE, doing: "running" };
     let ended = work.wait(link, screen, letters).await.known()?;
     let Some(End { coordinates, elapsed_ms, is_paused }) = ended else { return Err(plan_end(link, order)) };
@@ -427,7 +368,7 @@ fn plan_end(link: &mut Link, order: table::Command) -> Failure {
 const DONE: &str = "the start was accepted";
 
 /// Whether a program is paused as intended: after a STOP step, or in step mode.
-async fn is_at_stop_instruction(link: &mut Link, last: Option<&(i32, String)>) -> Result<bool, Failure> {
+async fn is_at_stop_instruction(link: &mut Link, last: Option<&(i32, String)>) -> Result<bool> {
     if link.status_of(&[2]).await?.run_mode() == Some(RunMode::Step) {
         return Ok(true);
     }

@@ -3,20 +3,17 @@
 
 use std::io;
 use std::net::SocketAddr;
-use std::path::PathBuf;
-
-use clap::Args;
 
 use crate::backup::twin;
+use crate::prelude::basics::*;
 use crate::simulated::{self, Simulated};
 use armctl_controller::simulator::run_options::{RunOptions, Speed};
 use armctl_frame::backup::recording::ReplayArguments;
 use armctl_frame::backup::twin::note;
-use armctl_frame::failure::{Failure, plain};
+use armctl_frame::failure::plain;
 use armctl_frame::interrupt::catch_interrupts;
 use armctl_frame::serve::terminal_link::TerminalLink;
 use armctl_frame::serve::{self, Serving, Started, address, bind_failure};
-use armctl_frame::settings::target::Family;
 use armctl_transport::fault::LineFaultSpec;
 use armctl_transport::line::Pace;
 use armctl_transport::stream_server::StreamServer;
@@ -78,7 +75,7 @@ impl serve::Serve for Serve {
     type Report = Serving;
     type Server = Toyo;
 
-    async fn start(self) -> Result<Started<Self>, Failure> {
+    async fn start(self) -> Result<Started<Self>> {
         let start = simulated::start(self.state.as_deref(), self.from.as_deref(), self.axes, self.fault.as_ref())?;
         let start = start.with_options(RunOptions { speed: self.speed, motions: None });
         let (start, replay) = self.replay.apply(start, Family::Toyo)?;
@@ -121,8 +118,8 @@ pub struct Toyo {
 }
 
 impl serve::Server for Toyo {
-    async fn run_until_change(&mut self) -> io::Result<()> {
-        self.server.turn(&mut self.simulated).await
+    fn run_until_change(&mut self) -> LocalBoxFuture<'_, io::Result<()>> {
+        self.server.turn(&mut self.simulated).boxed_local()
     }
 
     fn console(&mut self, line: &str) -> Result<String, String> {

@@ -1,15 +1,9 @@
 //! Start state of a simulated controller.
 
-use std::path::Path;
-
-use anyhow::Context as _;
-
+use crate::prelude::basics::*;
 pub use armctl_client::toyo::Simulated;
 use armctl_controller::toyo::simulator::Start;
-use armctl_files as files;
 use armctl_frame::backup::twin;
-use armctl_frame::failure::Failure;
-use armctl_frame::settings::target::Family;
 use armctl_transport::fault::LineFaultSpec;
 
 /// Start state with the busy rate of the faults. It comes from a state file or a backup, or is the built-in state with
@@ -19,7 +13,7 @@ pub fn start(
     from: Option<&Path>,
     axes: Option<u8>,
     faults: Option<&LineFaultSpec>,
-) -> Result<Start, Failure> {
+) -> Result<Start> {
     let start = match (from, state, axes) {
         (None, None, None) => Start::default(),
         (None, None, Some(axes)) => Start::parse(&format!("axes = {axes}")).map_err(Failure::usage)?,
@@ -39,7 +33,7 @@ pub fn start(
     })
 }
 
-fn load(path: &Path) -> Result<Start, Failure> {
+fn load(path: &Path) -> Result<Start> {
     let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
     Start::parse(&text).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))

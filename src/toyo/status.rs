@@ -1,6 +1,5 @@
 //! `toyo status`: all five pages of the status.
 
-use super::link::Toyo;
 use super::overview::state;
 use crate::prelude::*;
 use armctl_controller::toyo::status::{self, ProgramKind};
@@ -15,7 +14,7 @@ impl Command for Status {
     type Report = StatusReport;
     const ID: &'static str = "toyo.status";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<StatusReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<StatusReport> {
         Ok(StatusReport::of(context.link.status().await?))
     }
 }

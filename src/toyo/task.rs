@@ -1,7 +1,5 @@
 //! `toyo task`: the current task. Programs, tables and positions belong to a task.
 
-use super::link::Link;
-use super::link::Toyo;
 use super::number_arguments::{number, read_back, read_back_mismatch, saturated_byte};
 use crate::prelude::*;
 use armctl_controller::toyo::field::Field;
@@ -34,7 +32,7 @@ fn field() -> &'static Field {
 }
 
 /// The current task.
-pub async fn current(link: &mut Link) -> Result<u8, Failure> {
+pub async fn current(link: &mut Link) -> Result<u8> {
     let answer = link.ask(&Request::bare(table::Command::Mtsk)).await?;
     Ok(saturated_byte(&answer, field().name))
 }
@@ -44,7 +42,7 @@ impl Command for Get {
     type Report = Current;
     const ID: &'static str = "toyo.task.get";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Current, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Current> {
         Ok(Current { task: current(context.link).await? })
     }
 }
@@ -55,7 +53,7 @@ impl Command for Set {
     const ID: &'static str = "toyo.task.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport> {
         let (link, order) = (context.link, Request::of(table::Command::Ctsk, [Value::Number(self.task)]));
         let read = Request::bare(table::Command::Mtsk);
         let task = |record: &Record| record.number(field().name);

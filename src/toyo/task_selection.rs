@@ -1,12 +1,11 @@
 //! Temporary selection of another task during a command.
 
-use super::link::Link;
 use crate::prelude::*;
 use armctl_controller::toyo::table::Command;
 
 /// Reads the current task, and selects `task` temporarily if another task is current. Returns the task that is current
 /// after this.
-pub async fn select_task(link: &mut Link, task: Option<u8>) -> Result<u8, Failure> {
+pub async fn select_task(link: &mut Link, task: Option<u8>) -> Result<u8> {
     if link.is_dry_run() {
         link.plan(&Request::bare(Command::Mtsk), "the current task");
         if let Some(task) = task {
@@ -28,7 +27,7 @@ pub async fn select_task(link: &mut Link, task: Option<u8>) -> Result<u8, Failur
 }
 
 /// Restores temporary changes, after success or failure. After Ctrl-C, they are restored when the link is closed.
-pub async fn restore_task<T>(link: &mut Link, outcome: Result<T, Failure>) -> Result<T, Failure> {
+pub async fn restore_task<T>(link: &mut Link, outcome: Result<T>) -> Result<T> {
     if outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Interrupted) {
         return outcome;
     }

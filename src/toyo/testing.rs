@@ -1,22 +1,16 @@
 //! Test bench: the blocks of a command line, and their effect on a simulator in virtual time.
 
 use std::collections::{HashMap, VecDeque};
-use std::fmt;
-use std::sync::{Arc, RwLock, RwLockReadGuard, RwLockWriteGuard};
-use std::time::Duration;
+use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
 
 use serde_json::Value;
 
 use super::connect;
-use super::link::Link;
-use super::link::Toyo;
 use super::simulated::Simulated;
 use crate::prelude::*;
 use armctl_client::toyo::{Client, FENCE};
 use armctl_controller::toyo::simulator::Start;
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::face::Face;
-use armctl_frame::face::registration::Registered;
 use armctl_frame::gate::{Gate, Grant, Intent};
 use armctl_frame::output::{ColorChoice, Format};
 use armctl_frame::testing::{self, QUIET, context, frames, planned, unlimited_access};
@@ -43,7 +37,7 @@ pub(super) fn intent(words: &[&str]) -> String {
 }
 
 /// Blocks of `armctl toyo WORDS…` without the requests that precede and follow every command.
-pub(super) fn blocks(words: &[&str]) -> Result<Vec<String>, Failure> {
+pub(super) fn blocks(words: &[&str]) -> Result<Vec<String>> {
     let mut frames = frames(&plan(words)?);
     frames.retain(|frame| frame["about"] != FENCE && !asks_letters(frame));
     let blocks = frames.iter().map(text);
@@ -57,12 +51,12 @@ fn asks_letters(frame: &Value) -> bool {
 }
 
 /// All blocks of `armctl toyo WORDS…`.
-pub(super) fn all_blocks(words: &[&str]) -> Result<Vec<String>, Failure> {
+pub(super) fn all_blocks(words: &[&str]) -> Result<Vec<String>> {
     Ok(frames(&plan(words)?).iter().map(text).collect())
 }
 
 /// Report of a dry run.
-pub(super) fn plan(words: &[&str]) -> Result<Value, Failure> {
+pub(super) fn plan(words: &[&str]) -> Result<Value> {
     let (robot, command) = resolved("tcp://127.0.0.1:1", words)?;
     planned::<Toyo>(&robot, &*command, |_| ())
 }
@@ -195,7 +189,7 @@ impl Bench {
     }
 
     /// Runs `armctl toyo WORDS…`, and interrupts it with Ctrl-C after a time. Returns the message of the stop.
-    pub(super) fn run_and_interrupt(&mut self, words: &[&str], after: Duration) -> Result<String, Failure> {
+    pub(super) fn run_and_interrupt(&mut self, words: &[&str], after: Duration) -> Result<String> {
         self.run_and_abandon(words, after);
         self.runtime.block_on(Toyo::halt(&mut self.link))
     }
@@ -228,7 +222,7 @@ impl Bench {
     }
 
     /// Closes the link.
-    pub(super) fn close(self) -> Result<(), Failure> {
+    pub(super) fn close(self) -> Result<()> {
         self.runtime.block_on(Toyo::close(self.link, &quiet()))
     }
 
@@ -241,7 +235,7 @@ impl Bench {
     }
 
     /// Runs `armctl toyo WORDS…`. Returns the data of the report, and the failure that the report states.
-    pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
+    pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>)> {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link } = self;
         let report = runtime.block_on(testing::run::<Toyo>(&*command, context(robot, link)))?;
@@ -249,7 +243,7 @@ impl Bench {
     }
 
     /// Runs `armctl toyo WORDS…` on a robot that counts as real. There is no terminal, so no question can be answered.
-    pub(super) fn run_without_confirmation(&mut self, words: &[&str]) -> Result<Value, Failure> {
+    pub(super) fn run_without_confirmation(&mut self, words: &[&str]) -> Result<Value> {
         let (robot, command) = resolved("tcp://127.0.0.1:1", words)?;
         let intent = command.intent(Some(&robot));
         Gate::default().must_ask(&QUIET, &robot, &intent)?;
@@ -273,7 +267,7 @@ impl Bench {
 }
 
 /// Runs a command line that needs no robot.
-pub(super) fn without_robot(words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
+pub(super) fn without_robot(words: &[&str]) -> Result<(Value, Option<Failure>)> {
     let (_, command) = resolved("sim:", words)?;
     let report = command.without_robot(&quiet()).expect("the command needs no robot")?;
     Ok((report.data()?, report.failure()))
@@ -284,10 +278,10 @@ fn runtime() -> tokio::runtime::Runtime {
 }
 
 /// The family.
-const FACE: &dyn Face = &Registered::<Toyo>::FACE;
+const FACE: &Face = &Face::of::<Toyo>();
 
 /// Robot and command of a command line.
-fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
+fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>)> {
     testing::resolve(FACE, target, words)
 }
 

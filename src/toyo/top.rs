@@ -2,11 +2,11 @@
 //! in the detail view. The protocol has no torque.
 
 use super::explain::alarm_from_code;
-use super::io::{INPUTS, OUTPUTS, PortBank, ports_of};
+use super::io::port::{INPUTS, OUTPUTS, PortBank, ports_of};
 use super::link::{Link, Toyo};
 use super::overview::report;
 use super::position::Coordinates;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::toyo::table::Command;
 use armctl_frame::Family as _;
 use armctl_frame::face::registration;
@@ -27,11 +27,11 @@ type Limits = [Option<(f64, f64)>; 4];
 impl registration::Poller for Poller {
     type Family = Toyo;
 
-    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
+    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self> {
         Ok(Self { link: Toyo::connect(robot, access, screen).await?, limits: None })
     }
 
-    async fn look(&mut self, detail: Detail) -> Result<Sample, Failure> {
+    async fn look(&mut self, detail: Detail) -> Result<Sample> {
         let (first, answered_in) = clocked(self.link.status_of(&[0])).await;
         let first = first?;
         let rest: &[u8] = match (detail, first.has_error()) {
@@ -54,18 +54,13 @@ impl registration::Poller for Poller {
         &mut self.link
     }
 
-    async fn close(self, screen: &Screen) -> Result<(), Failure> {
+    async fn close(self, screen: &Screen) -> Result<()> {
         Toyo::close(self.link, screen).await
     }
 }
 
 impl Poller {
-    async fn whole(
-        &mut self,
-        detail: Detail,
-        status: Status,
-        coordinates: Option<Coordinates>,
-    ) -> Result<Whole, Failure> {
+    async fn whole(&mut self, detail: Detail, status: Status, coordinates: Option<Coordinates>) -> Result<Whole> {
         let is_full = detail == Detail::Full;
         let limits = match self.limits {
             Some(limits) => limits,
@@ -82,7 +77,7 @@ impl Poller {
     }
 
     /// Reads the first screen of ports of the controller.
-    async fn bank(&mut self, name: &'static str, ports: PortBank) -> Result<Bank, Failure> {
+    async fn bank(&mut self, name: &'static str, ports: PortBank) -> Result<Bank> {
         let groups = match self.link.try_ask(&ports.request(0, 1)).await? {
             Ok(record) => {
                 ports_of(&record).iter().map(|port| SignalByte::falling(port.name.clone(), port.byte)).collect()
@@ -94,7 +89,7 @@ impl Poller {
 }
 
 /// Reads the soft limits.
-async fn limits(link: &mut Link) -> Result<Limits, Failure> {
+async fn limits(link: &mut Link) -> Result<Limits> {
     let (least, most) = (parameter(link, "P02").await?, parameter(link, "P01").await?);
     let (Some(least), Some(most)) = (least, most) else { return Ok(Limits::default()) };
     let limit =
@@ -102,7 +97,7 @@ async fn limits(link: &mut Link) -> Result<Limits, Failure> {
     Ok([1, 2, 3, 4].map(|axis| Some((limit(&least, axis)?, limit(&most, axis)?)).filter(|(least, most)| least < most)))
 }
 
-async fn parameter(link: &mut Link, id: &str) -> Result<Option<Record>, Failure> {
+async fn parameter(link: &mut Link, id: &str) -> Result<Option<Record>> {
     let request = Parameter::named(id).and_then(|parameter| Request::read_parameter(parameter, None).ok());
     let request = request.ok_or_else(|| Failure::local(format!("unknown parameter {id}")))?;
     Ok(link.try_ask(&request).await?.ok())

@@ -2,7 +2,7 @@
 
 use std::net::SocketAddr;
 
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::toyo::describe::{Sender, summary};
 use armctl_frame::trace;
 use armctl_transport::tap::Direction;
@@ -24,11 +24,7 @@ const MAX_LINE_CHARS: usize = 512;
 
 impl Trace {
     /// Opens the trace that the options request. `ends` are the addresses of a TCP connection.
-    pub fn open(
-        access: &Access,
-        screen: &Screen,
-        address_pair: Option<(SocketAddr, SocketAddr)>,
-    ) -> Result<Self, Failure> {
+    pub fn open(access: &Access, screen: &Screen, address_pair: Option<(SocketAddr, SocketAddr)>) -> Result<Self> {
         let record = match address_pair {
             Some(_) => trace::Trace::of_network(access, screen)?,
             None => trace::Trace::of_lines(access, screen)?,
@@ -66,7 +62,7 @@ impl Trace {
     }
 
     /// Closes the trace. Returns a failure if it is incomplete.
-    pub fn finish(&mut self) -> Result<(), Failure> {
+    pub fn finish(&mut self) -> Result<()> {
         self.flush();
         self.record.finish()
     }
@@ -114,7 +110,6 @@ fn text(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_frame::ConnectMode;
     use armctl_frame::output::{ColorChoice, Format};
 
     /// Content of a capture file with a request and its answer.

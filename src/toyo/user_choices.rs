@@ -3,12 +3,9 @@
 //! A controller does not report which client switched its host ON. A setting that the user did not choose on this
 //! computer comes from another client.
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
+use serde::Deserialize;
 
-use serde::{Deserialize, Serialize};
-
-use armctl_files as files;
+use crate::prelude::basics::*;
 use armctl_frame::local_names::state_folder;
 
 /// Choices for one robot.

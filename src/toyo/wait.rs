@@ -1,18 +1,13 @@
 //! Wait for the end of work that the controller accepted: a return to origin, a program, a transfer of the memory card.
 
-use std::time::Duration;
-
 use tokio::time::Instant;
 
-use super::link::Link;
 use super::position::Coordinates;
-use super::program::steps;
 use super::refusal;
 use crate::prelude::*;
 pub(super) use armctl_client::toyo::status_page;
 use armctl_controller::toyo::errors;
 use armctl_controller::toyo::table::Command;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::output::progress::Progress;
 
 /// Interval between two reads of the status.
@@ -69,7 +64,7 @@ impl AcceptedWork {
     ///
     /// # Errors
     /// [`Kind::ConditionNotMet`] if the work did not complete, [`Kind::OutcomeUnknown`] if the connection was lost.
-    pub(super) async fn wait(self, link: &mut Link, screen: &Screen, letters: Letters) -> Result<End, Failure> {
+    pub(super) async fn wait(self, link: &mut Link, screen: &Screen, letters: Letters) -> Result<End> {
         if link.is_dry_run() {
             self.plan(link);
             return Err(unknown());
@@ -115,7 +110,7 @@ impl AcceptedWork {
         link: &mut Link,
         reporter: &mut ProgressReporter,
         is_thorough: bool,
-    ) -> Result<(Status, Option<Record>), Failure> {
+    ) -> Result<(Status, Option<Record>)> {
         let status = link.status_of(self.pages()).await?;
         if status.paused() || (is_thorough && self.work == Work::Program) {
             reporter.inputs = link.status_of(&[4]).await?.inputs;
@@ -212,7 +207,7 @@ async fn wait_for_rest(link: &mut Link, last_position: Option<Coordinates>, lett
 }
 
 /// Reads the current step and its number; `None` if the controller does not report the step.
-pub(super) async fn step(link: &mut Link) -> Result<Option<(i32, String)>, Failure> {
+pub(super) async fn step(link: &mut Link) -> Result<Option<(i32, String)>> {
     let Ok(record) = steps::numbered(link, 0).await? else { return Ok(None) };
     let text = record.text("text").unwrap_or_default().to_owned();
     Ok(record.number("step").map(|number| (number, text)))
@@ -224,7 +219,7 @@ pub(super) async fn wait_for_status(
     link: &mut Link,
     (page, about): (u8, &str),
     condition: impl Fn(Status) -> bool,
-) -> Result<bool, Failure> {
+) -> Result<bool> {
     if link.is_dry_run() {
         link.plan(&status_page(page), &format!("every 100 ms, at most 1s: {about}"));
         return Err(unknown());
@@ -353,7 +348,6 @@ impl WorkState {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_controller::toyo::field::Value;
 
     const IDLE: u8 = 0x30;
     const RUNS: u8 = 0x32;

@@ -2,8 +2,6 @@
 
 mod report;
 
-use clap::ValueEnum;
-
 pub(super) use self::report::in_a_line;
 use self::report::{WithTexts, YercAlarmFields, entry, explain, short};
 use super::control_commands::usage;
@@ -12,7 +10,7 @@ use super::link::Link;
 use super::link::Yerc;
 use super::number_arguments::parse_in_range;
 use crate::item_requests::read_failure;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::yerc::payload;
 use armctl_controller::yerc::query::{self, Query, ReadAlarm, ReadAlarmHistory};
 use armctl_controller::yerc::wire::Status;
@@ -52,7 +50,7 @@ impl Command for List {
     type Report = Alarms<YercAlarmFields, WithTexts>;
     const ID: &'static str = "yerc.alarm.list";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Alarms<YercAlarmFields, WithTexts>, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Alarms<YercAlarmFields, WithTexts>> {
         let link = context.link;
         let mut texts = !self.no_texts;
         let question = |slot, texts| ReadAlarm::new(slot, texts).map_err(usage);
@@ -135,7 +133,7 @@ impl Command for History {
     type Report = Alarms<YercAlarmFields, WithTexts>;
     const ID: &'static str = "yerc.alarm.history";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Alarms<YercAlarmFields, WithTexts>, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Alarms<YercAlarmFields, WithTexts>> {
         let link = context.link;
         let mut texts = !self.no_texts;
         let numbers = self.from..=self.from.saturating_add(self.limit - 1).min(HISTORY_SIZE);
@@ -170,7 +168,7 @@ impl Command for History {
 
 /// Alarms in the first `slots` slots, for a live view. If the controller has no texts, `texts` is set to false. An
 /// alarm that cannot be read does not prevent the report of the others.
-pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Result<Vec<alarm::Alarm>, Failure> {
+pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Result<Vec<alarm::Alarm>> {
     let mut alarms = Vec::new();
     let mut batch = Batch::default();
     for slot in 1..=slots {
@@ -196,14 +194,14 @@ pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Res
 }
 
 /// In a dry run, records the request for the latest alarm.
-pub(super) fn plan_latest(link: &mut Link) -> Result<(), Failure> {
+pub(super) fn plan_latest(link: &mut Link) -> Result<()> {
     let request = ReadAlarm::new(1, true).map_err(usage)?.request();
     link.plan_if(&request, Reason::about("the latest alarm").depending_on("whether an alarm is present"));
     Ok(())
 }
 
 /// In a dry run, records all requests, and the first fallback request for an older controller.
-fn plan<Q: Query>(link: &mut Link, all: &[Q], texts: bool, older: &Q) -> Result<(), Failure> {
+fn plan<Q: Query>(link: &mut Link, all: &[Q], texts: bool, older: &Q) -> Result<()> {
     let item_name = link.plan_all(all);
     if texts && link.is_dry_run() {
         let about = "without alarm texts, if the controller has no texts; armctl then sends all later requests \
@@ -222,8 +220,8 @@ async fn read<Q: Query<Answer = payload::Alarm>>(
     link: &mut Link,
     batch: &mut Batch,
     texts: &mut bool,
-    question: impl Fn(bool) -> Result<Q, Failure>,
-) -> Result<Outcome<payload::Alarm>, Failure> {
+    question: impl Fn(bool) -> Result<Q>,
+) -> Result<Outcome<payload::Alarm>> {
     if *texts {
         match link.ask_in_batch(batch, &question(true)?).await? {
             Err(ReadError::Refused(refusal)) if is_possibly_unsupported(refusal.status) => *texts = false,
@@ -256,7 +254,7 @@ macro_rules! order {
                 $query.risk()
             }
 
-            async fn run(&self, context: Context<'_, Yerc>) -> Result<SetReport, Failure> {
+            async fn run(&self, context: Context<'_, Yerc>) -> Result<SetReport> {
                 context.link.ask(&$query).await?;
                 Ok(NewValue::of($set, $new, $done).replaces(Old::UNREAD))
             }
@@ -276,7 +274,6 @@ order! {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
     use crate::testing::{error_text, frames, golden, reports};

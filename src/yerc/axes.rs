@@ -1,17 +1,12 @@
 //! `yerc axes`, `yerc position-error`, `yerc torque`: data per axis.
 
-use std::fmt;
 use std::str::FromStr;
 
-use super::control_commands::usage;
 use super::item_requests::ask_existing;
-use super::link::Yerc;
 use super::position::ByAxis;
-use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_controller::yerc::payload::AxisNames;
 use armctl_controller::yerc::query::{Coordinates, ReadAxes, ReadPositionError, ReadTorque};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::items;
 use armctl_frame::items::ItemError;
 
@@ -63,7 +58,7 @@ impl Command for AxesOf {
     type Report = Configuration;
     const ID: &'static str = "yerc.axes";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Configuration, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Configuration> {
         let link = context.link;
         let model = match self.group {
             Groups::One(group) => link.model_for(|model| ReadAxes::new(model, group, Coordinates::Pulse)).await?,
@@ -173,7 +168,7 @@ macro_rules! by_axis {
             type Report = $report;
             const ID: &'static str = $id;
 
-            async fn run(&self, context: Context<'_, Yerc>) -> Result<$report, Failure> {
+            async fn run(&self, context: Context<'_, Yerc>) -> Result<$report> {
                 let link = context.link;
                 let question = link.by_model(|model| $query::new(model, self.group)).await?;
                 let Some(axes) = link.ask(&question).await.known()? else {
@@ -228,13 +223,11 @@ by_axis! {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
     use crate::testing::{frames, frames_on, golden, reports};
     use armctl_client::yerc::AxisSet;
     use armctl_controller::yerc::payload::{Axes, Text};
-    use armctl_frame::failure::Kind;
     use armctl_frame::output::render;
 
     #[test]

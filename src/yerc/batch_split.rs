@@ -5,10 +5,8 @@ use std::collections::{HashMap, VecDeque};
 
 use super::item_requests::{Batch, Outcome, ReadError};
 use super::link::Link;
-use armctl_controller::yerc::request::Request;
+use crate::prelude::basics::*;
 use armctl_controller::yerc::variables::PlannedRead;
-use armctl_frame::dry_run::{Reason, unknown};
-use armctl_frame::failure::{Failure, Kind};
 
 /// How a refused run is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,11 +22,11 @@ pub enum BatchSplit {
 /// records the plan.
 pub async fn read_in_batches<S: PlannedRead>(
     link: &mut Link,
-    mut plan: impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
+    mut plan: impl FnMut(&[S::Item]) -> Result<Vec<S>>,
     wanted: &[S::Item],
     parts: impl Fn(&[S::Item]) -> BatchSplit,
     mut progress: impl FnMut(&[S::Item], usize),
-) -> Result<HashMap<S::Item, Outcome<S::Value>>, Failure> {
+) -> Result<HashMap<S::Item, Outcome<S::Value>>> {
     if wanted.is_empty() {
         return Ok(HashMap::new());
     }
@@ -66,10 +64,7 @@ pub async fn read_in_batches<S: PlannedRead>(
 }
 
 /// Whether a request is for only one item. The request may include other items that are not needed.
-fn is_alone<S: PlannedRead>(
-    step: &S,
-    plan: &mut impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
-) -> Result<bool, Failure> {
+fn is_alone<S: PlannedRead>(step: &S, plan: &mut impl FnMut(&[S::Item]) -> Result<Vec<S>>) -> Result<bool> {
     let asked = step.wanted();
     Ok(asked.len() == 1 && plan(asked)?.iter().all(|alone| alone.request() == step.request()))
 }
@@ -79,11 +74,11 @@ fn is_alone<S: PlannedRead>(
 /// example. `about` is the purpose of a run.
 pub fn plan_in_batches<S: PlannedRead>(
     link: &mut Link,
-    mut plan: impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
+    mut plan: impl FnMut(&[S::Item]) -> Result<Vec<S>>,
     wanted: &[S::Item],
     parts: impl Fn(&[S::Item]) -> BatchSplit,
     about: impl Fn(&[S::Item]) -> Option<String>,
-) -> Result<(), Failure> {
+) -> Result<()> {
     for step in plan(wanted)? {
         let asked = step.wanted();
         let purpose = about(asked);

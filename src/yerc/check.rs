@@ -1,7 +1,5 @@
 //! Checks of `armctl robots check` that are specific to the controller.
 
-use super::link::Link;
-use super::link::Yerc;
 use super::overview::left_over;
 use crate::prelude::*;
 use armctl_controller::yerc::payload::StatusBit;
@@ -14,7 +12,7 @@ use armctl_frame::settings::names::CacheFile;
 const LAYERS: &[&str] = &["name", "answer", "software", "model", "mode", "command remote", "hold", "alarm", "servo"];
 
 /// Checks the layers. It only reads.
-pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
+pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>> {
     let mut layers = Layers::new(robot.label(), LAYERS);
     match Yerc::connect(robot, access, screen).await {
         Err(failure) => layers.fail("name", &failure),
@@ -111,7 +109,7 @@ fn names(robot: &Robot, link: &Link, layers: &mut Layers) {
 }
 
 /// Reads the version of the system software and the name of the system.
-pub(super) async fn software(link: &mut Link) -> Result<String, Failure> {
+pub(super) async fn software(link: &mut Link) -> Result<String> {
     let question = link.by_model(|model| ReadSystemInfo::new(model, SystemPart::Group(Group::R1))).await?;
     let encoding = link.encoding;
     let info = link.ask(&question).await?;

@@ -32,7 +32,7 @@ commands! {
         /// Switch servo power
         Servo(control_commands::Servo),
         /// Stop the running job and all motion: HOLD on
-        Stop(job::Halt),
+        Stop(job::Stop<false>),
         /// Apply (on) or release (off) HOLD
         Hold(control_commands::Hold),
         /// Lock or unlock the pendant and the operation signals

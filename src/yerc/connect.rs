@@ -4,17 +4,18 @@ use super::failure::failure;
 use super::link::Yerc;
 use super::overview::overview;
 use super::simulator_start;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_client::yerc::{Client, Endpoint, Options};
 use armctl_frame::Family as _;
 use armctl_frame::backup::recording::with_replay;
+use armctl_frame::face::HeldLink;
 use armctl_frame::session_client::attach;
 use armctl_frame::settings::Sessions;
-use armctl_frame::settings::target::{Family, Place};
+use armctl_frame::settings::target::Place;
 use armctl_transport::fault::FaultSpec;
-use armctl_transport::session::host::shared_link::Datagrams;
+use armctl_transport::session::host::shared_link::SharedLink;
 
-fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
+fn endpoint(robot: &Robot) -> Result<Endpoint> {
     match &robot.target.value.place {
         Place::Udp(udp) => Ok(Endpoint::Udp { host: udp.host.clone(), ports: [udp.port, udp.file_port] }),
         Place::Sim(sim) => {
@@ -42,7 +43,7 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
 }
 
 /// Connects to the controller of a target.
-pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Client, Failure> {
+pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Client> {
     let options = Options {
         model: robot.model.value.named(),
         grant: access.grant.clone(),
@@ -66,10 +67,11 @@ pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Cli
 
 /// Opens a connection for a session. UDP sends even if there is no receiver, so a first request checks that a
 /// controller answers.
-pub async fn hold_robot(robot: &Robot, access: &Access, screen: &Screen) -> Result<Datagrams, Failure> {
+pub async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink> {
     let robot = &Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Yerc::connect(robot, access.clone(), screen).await?;
     overview(&mut link).await?;
     Yerc::close(link, screen).await?;
-    endpoint(robot)?.open_session_link().await.map_err(|error| failure(&robot.label(), error))
+    let held = endpoint(robot)?.open_session_link().await.map_err(|error| failure(&robot.label(), error))?;
+    Ok(SharedLink::Datagrams(held).into())
 }

@@ -1,10 +1,8 @@
 //! Commands that send one request: servo, hold, hlock, cycle, say.
 
-use clap::ValueEnum;
-
 use super::link::Yerc;
 use super::status::cycle_name;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::yerc::payload::{ControllerStatus, CycleMode};
 use armctl_controller::yerc::query::{self, Query};
 use armctl_frame::settings_report::Switch;
@@ -51,7 +49,7 @@ macro_rules! order {
                 $is_stop
             })?
 
-            async fn run(&self, context: Context<'_, Yerc>) -> Result<SetReport, Failure> {
+            async fn run(&self, context: Context<'_, Yerc>) -> Result<SetReport> {
                 let ($this, Context { link, confirmer, .. }) = (self, context);
                 let new = NewValue::of($set, $new, $done);
                 let old = Old::UNREAD;
@@ -173,7 +171,7 @@ impl Command for Say {
     const ID: &'static str = "yerc.say";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<SetReport> {
         refuse_controls("the message", &self.text)?;
         let bytes = context.link.encode("the message", &self.text)?;
         context.link.ask(&query::Say::new(&bytes).map_err(usage)?).await?;
@@ -184,7 +182,7 @@ impl Command for Say {
 
 /// Rejects control characters in display texts and job names, because the effect of such characters on a controller is
 /// unknown.
-pub(super) fn refuse_controls(what: &str, text: &str) -> Result<(), Failure> {
+pub(super) fn refuse_controls(what: &str, text: &str) -> Result<()> {
     match text.chars().find(|c| c.is_control()) {
         None => Ok(()),
         Some(found) => {
@@ -195,6 +193,6 @@ pub(super) fn refuse_controls(what: &str, text: &str) -> Result<(), Failure> {
 }
 
 /// Failure: a request cannot be built from these arguments.
-pub(super) fn usage(error: impl std::fmt::Display) -> Failure {
+pub(super) fn usage(error: impl fmt::Display) -> Failure {
     Failure::usage(error.to_string()).hint("see `--help` of the command, or `armctl help yerc` for all commands")
 }

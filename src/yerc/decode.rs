@@ -4,9 +4,7 @@ mod capture;
 
 pub use self::capture::FrameDecoder;
 use crate::prelude::*;
-use armctl_controller::user_input;
 use armctl_controller::yerc::describe::{Description, FieldNote, Sender, describe};
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::table::service;
 use armctl_controller::yerc::wire::{ANSWER_BIT, HEADER_LEN, RequestFrame};
 use armctl_frame::decode::capture::{Input, Selection, file_among, parse_hex};
@@ -48,7 +46,7 @@ impl decode::Decode for Decode {
     type Report = DecodedFrames;
     type Capture = FrameDecoder;
 
-    fn capture(&self) -> Result<Option<(Input<'_>, FrameDecoder)>, Failure> {
+    fn capture(&self) -> Result<Option<(Input<'_>, FrameDecoder)>> {
         Ok(file_among(&self.hex).map(|path| (Input::File(path), FrameDecoder::default())))
     }
 
@@ -56,14 +54,14 @@ impl decode::Decode for Decode {
         &self.selection
     }
 
-    fn decode(&self) -> Result<DecodedFrames, Failure> {
+    fn decode(&self) -> Result<DecodedFrames> {
         Ok(self.explain_frames(&self.frames()?))
     }
 }
 
 impl Decode {
     /// Bytes of each frame that the user typed.
-    fn frames(&self) -> Result<Vec<Vec<u8>>, Failure> {
+    fn frames(&self) -> Result<Vec<Vec<u8>>> {
         let wrong = |error| Failure::usage(error).hint("type bytes as 59455243… or 59 45 52 43 …");
         let mut pieces = Vec::new();
         if self.hex == ["-"] {

@@ -5,7 +5,6 @@ use armctl_controller::yerc::status;
 use armctl_frame::face::explain::{self as face, Codes, Known};
 use armctl_frame::robot::alarm::{Alarm, ExtraColumns, Kind, Source};
 use armctl_frame::settings::alarms::{Alarms, Origin};
-use armctl_frame::settings::target::Family;
 
 /// Status code (1 byte) or added status code (2 bytes) of an FS100, DX100, DX200 or YRC1000
 #[derive(Debug, Args)]
@@ -19,7 +18,7 @@ impl face::Explain for Explain {
     type Report = Codes<Listed>;
     const ID: &'static str = "explain.yerc";
 
-    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes<Listed>, Failure> {
+    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes<Listed>> {
         let mut found = status::lookup(&self.code).map_err(|error| {
             Failure::usage(error.to_string()).hint("look up a code that an error message or `alarm list` shows")
         })?;
@@ -61,7 +60,7 @@ fn alarm_number(text: &str) -> Option<u32> {
 }
 
 /// Meaning of an alarm number from `alarms.toml`, or where the user can find it.
-fn alarm(number: u32, alarms: &Alarms, origin: Origin<'_>) -> Result<Known<Listed>, Failure> {
+fn alarm(number: u32, alarms: &Alarms, origin: Origin<'_>) -> Result<Known<Listed>> {
     let code = number.to_string();
     let site = alarms.find(origin, &code)?;
     let lookup_hint = "look up the number in the controller's maintenance manual, or read the alarm text with `armctl \

@@ -1,14 +1,11 @@
 //! Implementation of the family interface for `yerc`.
 
-use std::path::Path;
-
 use super::alarm;
 use super::commands::Commands;
 use super::control_commands::Hold;
 use super::decode::Decode;
 use super::explain::Explain;
 use super::file::{Restore, back_up};
-use super::link::{Link, Yerc};
 use super::serve::Serve;
 use super::top::Poller;
 use super::{check, connect, overview, teach_panel};
@@ -16,16 +13,9 @@ use crate::prelude::*;
 use armctl_controller::yerc::{read_only_filter, simulator, status};
 use armctl_frame::backup::family_backup::Backups;
 use armctl_frame::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
-use armctl_frame::face::HeldLink;
-use armctl_frame::face::layers::Layer;
-use armctl_frame::face::overview::OverviewReport;
-use armctl_frame::face::registration::Declaration;
-use armctl_frame::face::sample::Traffic;
-use armctl_frame::face::teach_panel::Panel;
+use armctl_frame::face::{Declaration, HeldLink, Layer, OverviewReport, Panel, Traffic, Work};
 use armctl_frame::robot::alarm::Alarm;
-use armctl_frame::settings::target::Family;
 use armctl_transport::session::host::Guard;
-use armctl_transport::session::host::shared_link::SharedLink;
 
 impl Declaration for Yerc {
     type Commands = Commands;
@@ -50,17 +40,19 @@ impl Declaration for Yerc {
     const PANEL: Panel = teach_panel::PANEL;
     const GUARD: Guard =
         Guard { is_harmless_data: read_only_filter::only_reads_or_stops, is_harmless_image: |_, _| false };
+    const DISSECTOR: fn() -> String = super::wireshark::dissector;
+    const TWIN: fn(&Path) -> Result<Self::Start> = super::file::twin::start;
+    const ALARMS: fn(&mut Link) -> Work<'_, Vec<Alarm>> =
+        |link| async { alarm::present(link, &mut true, alarm::SLOTS).await }.boxed_local();
+    const TRAFFIC: fn(&Link) -> Traffic = Link::traffic;
+    const OVERVIEW: fn(&mut Link) -> Work<'_, OverviewReport> = |link| overview::overview(link).boxed_local();
+    const CHECK: for<'a> fn(&'a Robot, Access, &'a Screen) -> Work<'a, Vec<Layer>> =
+        |robot, access, screen| check::check(robot, access, screen).boxed_local();
+    const OPEN_SESSION_LINK: for<'a> fn(&'a Robot, &'a Access, &'a Screen) -> Work<'a, HeldLink> =
+        |robot, access, screen| connect::open_session_link(robot, access, screen).boxed_local();
 
     fn urls() -> Vec<(String, &'static str)> {
         vec![("udp://".to_owned(), "yerc: name or address of the controller")]
-    }
-
-    fn twin(folder: &Path) -> Result<Self::Start, Failure> {
-        super::file::twin::start(folder)
-    }
-
-    fn dissector() -> String {
-        super::wireshark::dissector()
     }
 
     fn codes() -> Vec<(String, String)> {
@@ -71,36 +63,16 @@ impl Declaration for Yerc {
     fn stop_command() -> Self::Stop {
         Hold::on()
     }
-
-    async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
-        alarm::present(link, &mut true, alarm::SLOTS).await
-    }
-
-    fn traffic(link: &Link) -> Traffic {
-        link.traffic()
-    }
-
-    async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
-        overview::overview(link).await
-    }
-
-    async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
-        check::check(robot, access, screen).await
-    }
-
-    async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
-        Ok(SharedLink::Datagrams(connect::hold_robot(robot, access, screen).await?).into())
-    }
 }
 
 impl Backups for Yerc {
     const IDS: [&'static str; 3] = ["yerc.backup", "yerc.restore", "yerc.diff"];
 
-    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport> {
         back_up(context, making).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport> {
         Restore::of(restoring).run(context).await
     }
 }

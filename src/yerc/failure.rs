@@ -2,12 +2,10 @@
 
 use std::io;
 
+use crate::prelude::basics::*;
 use armctl_client::yerc::{Error, Refusal};
-use armctl_controller::Risk;
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::status;
-use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::{Failure, Kind, plain};
+use armctl_frame::failure::plain;
 use armctl_frame::session_client::session_busy;
 
 /// Failure for an error of the client. `label` is the name of the robot.

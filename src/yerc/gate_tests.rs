@@ -1,16 +1,12 @@
 //! Tests of every command line of the family at the gate: its risk, and the risk in a dry run.
 
-use std::collections::BTreeSet;
-
-use serde_json::Value;
-
 use super::testing::{Bench, DX200, dry_run, resolve_robot};
 use crate::link::Yerc;
+use crate::prelude::basics::*;
 use armctl_controller::Risk::{self, Destroy, Motion, Read, Write};
 use armctl_controller::text::unhex;
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::wire::RequestFrame;
-use armctl_frame::face::registration::Registered;
+use armctl_frame::face::Face;
 use armctl_frame::testing;
 
 /// Commands that send no frames.
@@ -82,7 +78,7 @@ const LINES: &[(&str, Risk, &[&str])] = &[
 const BY_ROWS: [&str; 2] = ["var copy B0 B1", "var restore DIR/dump.csv"];
 
 /// Creates the files that the lines use.
-fn prepare(folder: &std::path::Path) {
+fn prepare(folder: &Path) {
     let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     std::fs::write(path("A.JBI"), "/JOB\r\n//NAME A\r\nNOP\r\nEND\r\n").unwrap();
     std::fs::write(path("dump.csv"), "name,value\nB0,7\n").unwrap();
@@ -123,7 +119,7 @@ fn every_command_passes_the_gate_according_to_its_risk() {
         assert_eq!(shown, expected, "{line}: {frames:?}");
     }
     let mut leaves = BTreeSet::new();
-    collect(&testing::family(&Registered::<Yerc>::FACE), "yerc", &mut leaves);
+    collect(&testing::family(&Face::of::<Yerc>()), "yerc", &mut leaves);
     // `job show` with --path has its own report.
     leaves.insert("yerc.job.path".to_owned());
     assert_eq!(tested, leaves);

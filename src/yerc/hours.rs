@@ -1,11 +1,8 @@
 //! `yerc hours`: running-time counters.
 
 use super::axes::{Groups, groups_of};
-use super::control_commands::usage;
 use super::item_requests::{Outcome, ask_existing};
-use super::link::Yerc;
 use super::number_arguments::parse_in_range;
-use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_controller::yerc::payload::ManagementTime;
 use armctl_controller::yerc::query::{QueryError, ReadManagementTime, TimeCounter};
@@ -52,7 +49,7 @@ impl Command for Hours {
     type Report = Times;
     const ID: &'static str = "yerc.hours";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Times, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Times> {
         let link = context.link;
         let make = |model| {
             self.counters(model).into_iter().map(|it| ReadManagementTime::new(model, it)).collect::<Result<Vec<_>, _>>()
@@ -111,7 +108,7 @@ struct Elapsed {
 }
 
 impl Time {
-    fn new(counter: TimeCounter, time: Result<ManagementTime, Failure>, encoding: Encoding) -> Self {
+    fn new(counter: TimeCounter, time: Result<ManagementTime>, encoding: Encoding) -> Self {
         let (name, group, application) = match counter {
             TimeCounter::ControlPower => ("control_power", None, None),
             TimeCounter::Servo(group) => ("servo", group, None),
@@ -179,7 +176,6 @@ mod tests {
     use super::*;
     use crate::testing::{error_text, frames, frames_on, golden};
     use armctl_controller::yerc::payload::Text;
-    use armctl_frame::failure::Kind;
     use armctl_frame::output::render;
 
     #[test]
@@ -216,6 +212,6 @@ mod tests {
         assert_eq!(json["times"][0]["elapsed_s"], 445_506);
         let names = [0, 1, 2].map(|at| json["times"][at]["name"].as_str().unwrap());
         assert_eq!(names, ["control_power", "servo_R1", "application_2"]);
-        assert_eq!(json["times"][2]["elapsed_s"], serde_json::Value::Null);
+        assert_eq!(json["times"][2]["elapsed_s"], Value::Null);
     }
 }

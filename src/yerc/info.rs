@@ -1,11 +1,8 @@
 //! `yerc info`: software, models, parameters.
 
 use super::axes::{Groups, groups_of};
-use super::control_commands::usage;
 use super::item_requests::ask_existing;
-use super::link::Yerc;
 use super::number_arguments::parse_in_range;
-use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_controller::yerc::payload::{SystemInfo, Text};
 use armctl_controller::yerc::query::{QueryError, ReadSystemInfo, SystemPart};
@@ -49,7 +46,7 @@ impl Command for Info {
     type Report = Versions;
     const ID: &'static str = "yerc.info";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Versions, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Versions> {
         let link = context.link;
         let make = |model| {
             self.parts(model).into_iter().map(|part| ReadSystemInfo::new(model, part)).collect::<Result<Vec<_>, _>>()
@@ -98,7 +95,7 @@ struct Named {
 }
 
 impl Part {
-    fn new(part: SystemPart, info: Result<SystemInfo, Failure>, encoding: Encoding) -> Self {
+    fn new(part: SystemPart, info: Result<SystemInfo>, encoding: Encoding) -> Self {
         let (group, application) = match part {
             SystemPart::Group(group) => (Some(group.to_string()), None),
             SystemPart::Application(number) => (None, Some(number)),
@@ -147,7 +144,6 @@ impl Report for Versions {
 mod tests {
     use super::*;
     use crate::testing::{frames, frames_on, golden, reports};
-    use armctl_frame::failure::Kind;
     use armctl_frame::output::render;
 
     #[test]

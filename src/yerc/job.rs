@@ -16,7 +16,7 @@ mod stop;
 use std::str::FromStr;
 
 use self::source::Source;
-pub use self::stop::Halt;
+pub use self::stop::Stop;
 use super::control_commands::refuse_controls;
 use super::file::Edit;
 use super::item_requests::{Outcome, ReadError};
@@ -47,7 +47,7 @@ commands! {
         /// Start the selected job, or a job by name
         Start(start::Start),
         /// Stop the running job: HOLD on
-        Stop(stop::Stop),
+        Stop(Stop<true>),
         /// Edit a job in your editor and write it back
         Edit(Edit),
         /// Find a text, a variable, a signal or a call in jobs
@@ -236,7 +236,7 @@ impl Report for Jobs {
         let texts: Vec<Cell> = sources
             .map(|source| match (source.data(), source.error()) {
                 (_, Some(error)) => error.cell(),
-                (Some(source), None) => source.text().unwrap_or("(line not in the job file)").into(),
+                (Some(source), None) => source.text.as_deref().unwrap_or("(line not in the job file)").into(),
                 (None, None) => "".into(),
             })
             .collect();

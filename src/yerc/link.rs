@@ -1,7 +1,6 @@
 //! Controller connection of a command: the client, with conversion of its errors and a trace.
 
-use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::sync::Mutex;
 
 use derive_more::{Deref, DerefMut};
 
@@ -11,12 +10,11 @@ use super::failure::{failure, refused};
 use super::item_requests::{Batch, Outcome};
 use super::model_cache::CachedModel;
 use super::trace::Trace;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_client::Watcher;
 use armctl_client::yerc::{Cause, Client, Event, Totals, TransferError};
 pub use armctl_client::yerc::{Error, Refusal, RefusedRequest};
 use armctl_controller::yerc::query::{Query, QueryError};
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{DownloadEnd, Reply, UploadEnd};
 use armctl_frame::Family;
 use armctl_frame::dry_run::Plan;
@@ -56,7 +54,7 @@ impl Family for Yerc {
     type Link = Link;
     const STOP: &'static [&'static str] = &["hold", "on"];
 
-    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link> {
         let mut client = connect::open(robot, &access, screen).await?;
         let trace = Arc::new(Mutex::new(Trace::open(&access, screen)?));
         let label = robot.label();
@@ -68,7 +66,7 @@ impl Family for Yerc {
         Ok(Link { client, trace, screen: *screen, label, encoding, pulses_per_degree, move_words, cached_model })
     }
 
-    async fn halt(link: &mut Link) -> Result<String, Failure> {
+    async fn halt(link: &mut Link) -> Result<String> {
         // If this command did not start the motion, the motion is not stopped.
         if !link.has_moved() {
             return Ok("no motion command was sent".to_owned());
@@ -82,7 +80,7 @@ impl Family for Yerc {
         link.take_plan()
     }
 
-    async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
+    async fn close(mut link: Link, screen: &Screen) -> Result<()> {
         link.cache_model();
         let Link { client, trace, label, .. } = link;
         let totals = client.close().await.map_err(|error| failure(&label, error))?;
@@ -106,7 +104,7 @@ impl Link {
     }
 
     /// Model of the controller. If the model is unknown, it is read from the controller.
-    pub async fn model(&mut self) -> Result<Model, Failure> {
+    pub async fn model(&mut self) -> Result<Model> {
         let model = self.client.model().await;
         self.cache_model();
         model.map_err(|error| self.failure(error))
@@ -114,17 +112,14 @@ impl Link {
 
     /// Model with which a request can be built. The controller is asked only if the request depends on the model:
     /// [`Client::model_for`].
-    pub async fn model_for<T: PartialEq, E>(&mut self, make: impl Fn(Model) -> Result<T, E>) -> Result<Model, Failure> {
+    pub async fn model_for<T: PartialEq, E>(&mut self, make: impl Fn(Model) -> Result<T, E>) -> Result<Model> {
         let model = self.client.model_for(make).await;
         self.cache_model();
         model.map_err(|error| self.failure(error))
     }
 
     /// Builds a request that may depend on the model.
-    pub async fn by_model<T: PartialEq>(
-        &mut self,
-        make: impl Fn(Model) -> Result<T, QueryError>,
-    ) -> Result<T, Failure> {
+    pub async fn by_model<T: PartialEq>(&mut self, make: impl Fn(Model) -> Result<T, QueryError>) -> Result<T> {
         let model = self.model_for(&make).await?;
         make(model).map_err(usage)
     }
@@ -143,45 +138,41 @@ impl Link {
     }
 
     /// Sends one request. A refusal is a failure.
-    pub async fn ask<Q: Query>(&mut self, query: &Q) -> Result<Q::Answer, Failure> {
+    pub async fn ask<Q: Query>(&mut self, query: &Q) -> Result<Q::Answer> {
         self.ask_optional(query).await?.map_err(|refusal| refused(refusal, query.risk()))
     }
 
     /// Applies HOLD. Sends several attempts in parallel until the controller answers one of them.
-    pub async fn stop(&mut self) -> Result<(), Failure> {
+    pub async fn stop(&mut self) -> Result<()> {
         self.client.stop().await.map_err(|error| self.failure(error))
     }
 
     /// Sends one request. A refusal is a result, and not a failure.
-    pub async fn ask_optional<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>, Failure> {
+    pub async fn ask_optional<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>> {
         self.client.try_ask(query).await.map_err(|error| self.failure(error))
     }
 
     /// Reads the value that a write replaces. Returns `None` if the controller refuses. In a dry run, records the
     /// request and returns `None`. If the connection is lost, the failure states that nothing was written.
-    pub async fn before<Q: Query>(&mut self, question: &Q) -> Result<Option<Q::Answer>, Failure> {
+    pub async fn before<Q: Query>(&mut self, question: &Q) -> Result<Option<Q::Answer>> {
         let answer = self.for_purpose(OLD_VALUE).ask_optional(question).await.known().map_err(nothing_written)?;
         Ok(answer.and_then(Result::ok))
     }
 
     /// Sends several requests. Each request has its own outcome. A dry run records them all.
-    pub async fn ask_each<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Outcome<Q::Answer>>, Failure> {
+    pub async fn ask_each<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Outcome<Q::Answer>>> {
         let outcomes = self.client.ask_each(queries).await.map_err(|error| self.failure(error))?;
         Ok(outcomes.into_iter().map(|outcome| outcome.map_err(|denied| denied.map(|e| self.failure(e)))).collect())
     }
 
     /// Sends one request of a batch.
-    pub async fn ask_in_batch<Q: Query>(
-        &mut self,
-        batch: &mut Batch,
-        query: &Q,
-    ) -> Result<Outcome<Q::Answer>, Failure> {
+    pub async fn ask_in_batch<Q: Query>(&mut self, batch: &mut Batch, query: &Q) -> Result<Outcome<Q::Answer>> {
         let outcome = self.client.ask_in_batch(batch, query).await.map_err(|error| self.failure(error))?;
         Ok(outcome.map_err(|denied| denied.map(|error| self.failure(error))))
     }
 
     /// Sends a raw request, and returns the whole reply. The reply can also be a refusal.
-    pub async fn raw(&mut self, request: &Request) -> Result<Reply, Failure> {
+    pub async fn raw(&mut self, request: &Request) -> Result<Reply> {
         self.client.raw(request).await.map_err(|error| self.failure(error))
     }
 
@@ -191,8 +182,8 @@ impl Link {
         request: &Request,
         limit: u64,
         first_wait: Option<Duration>,
-        take: impl FnMut(&[u8]) -> Result<(), Failure>,
-    ) -> Result<DownloadEnd, Failure> {
+        take: impl FnMut(&[u8]) -> Result<()>,
+    ) -> Result<DownloadEnd> {
         let downloaded = self.client.download(request, limit, first_wait, take).await;
         downloaded.map_err(|TransferError { bytes, cause }| match cause {
             Cause::Caller(failure) => failure,
@@ -211,11 +202,7 @@ impl Link {
 
     /// Uploads a file: [`Client::upload`]. After the first block, the controller may have a part of the file or all of
     /// it.
-    pub async fn upload(
-        &mut self,
-        request: &Request,
-        give: impl FnMut() -> Result<Vec<u8>, Failure>,
-    ) -> Result<UploadEnd, Failure> {
+    pub async fn upload(&mut self, request: &Request, give: impl FnMut() -> Result<Vec<u8>>) -> Result<UploadEnd> {
         let uploaded = self.client.upload(request, give).await;
         uploaded.map_err(|TransferError { bytes, cause }| {
             let failure = match cause {
@@ -236,7 +223,7 @@ impl Link {
     }
 
     /// Records all requests in a dry run, in which the answers are unknown.
-    pub fn plan_all<Q: Query>(&mut self, queries: &[Q]) -> Result<(), Failure> {
+    pub fn plan_all<Q: Query>(&mut self, queries: &[Q]) -> Result<()> {
         self.client.plan_all(queries).map_err(|error| self.failure(error))
     }
 
@@ -252,7 +239,7 @@ impl Link {
     }
 
     /// Encodes a text in the encoding of the controller.
-    pub fn encode(&self, what: &str, text: &str) -> Result<Vec<u8>, Failure> {
+    pub fn encode(&self, what: &str, text: &str) -> Result<Vec<u8>> {
         self.encoding.encode(text).map_err(|error| {
             Failure::usage(format!("{what}: {error}"))
                 .hint("set the encoding with --encoding or in the robot's entry in robots.toml")

@@ -1,6 +1,6 @@
 //! Stored model of a controller. It is used for a day, and removed if the controller reports a different model.
 
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_client::yerc::Client;
 use armctl_frame::settings::model::{ModelCache, ReportedModel};
 use armctl_frame::settings::target::Address;

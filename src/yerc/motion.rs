@@ -1,15 +1,10 @@
 //! Events that can stop a motion or a job while a command waits for its end.
 
-use std::time::Duration;
-
 use super::alarm;
-use super::control_commands::usage;
-use super::link::Link;
 use crate::prelude::*;
 use armctl_controller::yerc::payload::{ControllerStatus, StatusBit};
 use armctl_controller::yerc::query::{Query as _, ReadAlarm};
 use armctl_frame::robot::alarm::hint_after;
-use armctl_frame::settings::target::Family;
 
 /// Interval of status reads. A controller answers in 5 to 20 ms, and a shorter interval has no benefit.
 pub(super) const POLL_INTERVAL: Duration = Duration::from_millis(50);
@@ -100,7 +95,7 @@ async fn present_alarm(link: &mut Link) -> (String, Option<String>) {
 }
 
 /// In a dry run, records the request that follows an alarm.
-pub(super) fn plan_alarm(link: &mut Link) -> Result<(), Failure> {
+pub(super) fn plan_alarm(link: &mut Link) -> Result<()> {
     let question = ReadAlarm::new(1, false).map_err(usage)?;
     let reason = Reason::about("alarm number, after an alarm").depending_on("whether the status shows an alarm");
     link.plan_if(&question.request(), reason);

@@ -16,8 +16,6 @@ use self::arguments::{
 use self::execution::{Execution, Goal, MotionReport};
 use self::question::Question;
 use self::variable_target::Motion;
-use super::link::Link;
-use super::link::Yerc;
 use crate::number_arguments::parse_in_range;
 use crate::prelude::*;
 use armctl_controller::units;
@@ -94,7 +92,7 @@ impl Target {
     }
 
     /// Moves to the typed coordinates, to the coordinates of a variable, or to joint angles in degrees.
-    async fn run(&self, context: Context<'_, Yerc>, kind: MoveKind, speed: Speed) -> Result<MotionReport, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>, kind: MoveKind, speed: Speed) -> Result<MotionReport> {
         match self.to.destination() {
             Some(destination) => Motion { target: self, kind, speed }.run(context, &destination).await,
             None => {
@@ -104,7 +102,7 @@ impl Target {
     }
 
     /// Rejects options whose value is already in the variable or in the pulses.
-    fn refuse_extra_flags(&self, flag: &str, has_frame: bool) -> Result<(), Failure> {
+    fn refuse_extra_flags(&self, flag: &str, has_frame: bool) -> Result<()> {
         let extra_flags = [
             ("--coordinate", self.frame.coordinate.is_some()),
             ("--tool or --user", has_frame),
@@ -121,12 +119,7 @@ impl Target {
         }
     }
 
-    async fn describe_move(
-        &self,
-        link: &mut Link,
-        kind: MoveKind,
-        speed: Speed,
-    ) -> Result<Execution<MoveCartesian>, Failure> {
+    async fn describe_move(&self, link: &mut Link, kind: MoveKind, speed: Speed) -> Result<Execution<MoveCartesian>> {
         let Self { to, frame, forms, base_axes, station_axes, mover } = self;
         let part = split(mover.group, to.coordinates(), "--to", base_axes.as_ref(), station_axes.as_ref())?;
         let coordinate = frame.kind();
@@ -213,7 +206,7 @@ macro_rules! motion {
                 $question.in_a_line()
             }
 
-            async fn run(&self, context: Context<'_, Yerc>) -> Result<MotionReport, Failure> {
+            async fn run(&self, context: Context<'_, Yerc>) -> Result<MotionReport> {
                 let ($this, $context) = (self, context);
                 $run.await
             }
@@ -306,7 +299,7 @@ impl Distance {
         }
     }
 
-    async fn describe_move(&self, link: &mut Link, speed: Speed) -> Result<Execution<MoveCartesian>, Failure> {
+    async fn describe_move(&self, link: &mut Link, speed: Speed) -> Result<Execution<MoveCartesian>> {
         let Self { frame, base_axes, station_axes, mover, .. } = self;
         let mut order = cartesian_move(link, mover, speed, frame);
         let goal = match split(mover.group, self.robot(), "--by", base_axes.as_ref(), station_axes.as_ref())? {
@@ -367,16 +360,11 @@ impl PulseTarget {
         }
     }
 
-    async fn run(&self, context: Context<'_, Yerc>, kind: MoveKind, speed: Speed) -> Result<MotionReport, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>, kind: MoveKind, speed: Speed) -> Result<MotionReport> {
         self.describe_move(context.link, kind, speed).await?.run(context, &self.question(kind, speed)).await
     }
 
-    async fn describe_move(
-        &self,
-        link: &mut Link,
-        kind: MoveKind,
-        speed: Speed,
-    ) -> Result<Execution<MovePulse>, Failure> {
+    async fn describe_move(&self, link: &mut Link, kind: MoveKind, speed: Speed) -> Result<Execution<MovePulse>> {
         let Self { pulses, tool, base_axes, station_axes, mover } = self;
         let part = split(mover.group, pulses.as_ref(), "--pulses", base_axes.as_ref(), station_axes.as_ref())?;
         let (robot, station) = mover.words();

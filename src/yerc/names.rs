@@ -4,7 +4,6 @@ use jiff::Timestamp;
 
 use super::check::software;
 use super::file::{FileReading, read_files};
-use super::link::{Link, Yerc};
 use crate::prelude::*;
 use armctl_controller::yerc::names::{FILES, FileNames, read};
 use armctl_frame::items::{self, ItemError};
@@ -41,7 +40,7 @@ impl Command for Get {
     type Report = Fetched;
     const ID: &'static str = "yerc.names.get";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Fetched, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Fetched> {
         let Context { link, robot, screen, .. } = context;
         let Some(answers) = read_files(link, screen, &FILES, MAX_FILE_SIZE).await? else {
             return Ok(Fetched::default());
@@ -167,7 +166,7 @@ impl Command for Forget {
     type Report = Forgotten;
     const ID: &'static str = "yerc.names.forget";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Forgotten, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Forgotten> {
         let place = context.robot.names.cache_file().filter(|_| !context.link.is_dry_run());
         Ok(Forgotten { forgotten: place.map_or(Ok(false), CacheFile::forget)? })
     }

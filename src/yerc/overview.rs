@@ -3,15 +3,14 @@
 use super::alarm::plan_latest;
 use super::link::Link;
 use super::status;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::yerc::payload::{ControllerStatus, StatusBit};
 use armctl_controller::yerc::query::{Coordinates, ReadPosition, ReadStatus};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::face::overview::{LeftOver, OverviewReport};
 use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
 
 /// Reads status and position.
-pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
+pub async fn overview(link: &mut Link) -> Result<OverviewReport> {
     let status = link.ask(&ReadStatus).await.known()?;
     let fault = match status {
         Some(status) => status::fault(link, status).await?,

@@ -2,15 +2,11 @@
 
 use std::fmt::Write as _;
 
-use clap::ValueEnum;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::Serializer;
-use serde_json::{Map, Value};
+use serde_json::Map;
 
-use super::link::Link;
-use super::link::Yerc;
 use super::var::{PositionData, as_position, stored_position};
-use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_client::yerc::AxisSet;
 use armctl_controller::units::{self, Unit};
@@ -18,7 +14,6 @@ use armctl_controller::yerc::payload;
 use armctl_controller::yerc::payload::{Axes, ExtendedForm, Form, MAX_AXES};
 use armctl_controller::yerc::query::{Coordinates, ReadPosition};
 use armctl_controller::yerc::variables;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::items;
 use armctl_frame::plot::SeriesHistory;
 use armctl_frame::robot::position::{self as robot, Joint, Positions, Row};
@@ -54,7 +49,7 @@ impl Command for Position {
     type Report = Positions;
     const ID: &'static str = "yerc.position";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Positions, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Positions> {
         let link = context.link;
         let which = match (self.coordinates, self.group) {
             (Some(which), _) => which,
@@ -102,7 +97,7 @@ pub(super) async fn ask(
     link: &mut Link,
     group: Group,
     coordinates: Coordinates,
-) -> Result<(payload::Position, robot::Position), Failure> {
+) -> Result<(payload::Position, robot::Position)> {
     let question = link.by_model(|model| ReadPosition::new(model, group, coordinates)).await?;
     let Some(position) = link.ask(&question).await.known()? else {
         link.plan_existing_axes(group, coordinates);
@@ -126,7 +121,7 @@ const fn frame(coordinates: Coordinates) -> &'static str {
 fn row(
     group: Group,
     coordinates: Coordinates,
-    outcome: Result<(payload::Position, AxisSet), Failure>,
+    outcome: Result<(payload::Position, AxisSet)>,
     per_degree: &[f64],
 ) -> Row {
     let position = outcome.and_then(|read| reported(group, coordinates, read, per_degree));
@@ -139,7 +134,7 @@ fn reported(
     coordinates: Coordinates,
     (position, fitted): (payload::Position, AxisSet),
     per_degree: &[f64],
-) -> Result<robot::Position, Failure> {
+) -> Result<robot::Position> {
     match (coordinates, position.kind) {
         (Coordinates::Pulse, PositionKind::Pulse) | (Coordinates::Base, PositionKind::Base) => {
             Ok(as_reported(group, position, fitted, per_degree))

@@ -1,8 +1,9 @@
 //! Names that almost every command of this family uses.
 
-pub use armctl_controller::text::Encoding;
-pub use armctl_controller::yerc::Model;
-pub use armctl_controller::yerc::files::{FileName, FileType};
-pub use armctl_controller::yerc::group::Group;
-pub use armctl_controller::yerc::payload::{Position, PositionKind};
-pub use armctl_frame::prelude::*;
+pub mod basics;
+
+pub use self::basics::*;
+pub(crate) use crate::complete;
+pub(crate) use crate::control_commands::usage;
+pub(crate) use crate::item_requests::read_failure;
+pub(crate) use crate::link::{Link, Yerc};

@@ -1,20 +1,15 @@
 //! `yerc raw`.
 
-use std::time::Duration;
-
 use tokio::time::Instant;
 
 use super::decode::FieldRow;
 use super::file::download_failed;
-use super::link::{self, Link, Refusal};
+use super::link::{self, Refusal};
 use super::var::confirm_raw;
 use crate::failure::refusal_failure;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::text::hex;
-use armctl_controller::user_input;
 use armctl_controller::yerc::describe::{Sender, describe};
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{DownloadEnd, Reply};
 use armctl_controller::yerc::status;
 use armctl_controller::yerc::table::{BATCH_BACKUP_PATH, Row, service};
@@ -118,7 +113,7 @@ impl Command for Raw {
         if is_known { Confirmation::WhenKnown } else { Confirmation::Question }
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Answer, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Answer> {
         let Context { link, screen, confirmer, .. } = context;
         let request = self.request();
         if !self.file && request.division() == Division::File {
@@ -159,7 +154,7 @@ const MAX_TRANSFER: u64 = 4 << 20;
 const BACKUP: Duration = Duration::from_secs(15 * 60);
 
 /// Executes a transfer, and returns all its blocks as the data of one answer.
-async fn transfer(link: &mut Link, request: &Request) -> Result<Reply, Failure> {
+async fn transfer(link: &mut Link, request: &Request) -> Result<Reply> {
     let began = Instant::now();
     let mut data = Vec::new();
     // The backup must not be requested twice, so the request is not repeated.
@@ -289,13 +284,9 @@ impl Report for Answer {
 
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
-    use serde_json::Value;
 
     use super::*;
     use crate::testing::{Bench, DX200, same};
-    use armctl_frame::failure::Kind;
 
     fn answer(status: Status, data: &[u8]) -> Answer {
         let request = Request { command: 0x7A, instance: 5, attribute: 1, service: 0x0E, data: Vec::new() };

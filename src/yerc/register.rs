@@ -4,18 +4,12 @@ use std::collections::HashSet;
 use std::str::FromStr;
 
 use super::batch_split::{BatchSplit, read_in_batches};
-use super::complete;
-use super::control_commands::usage;
-use super::link::{Link, Yerc};
-use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_controller::user_input;
 use armctl_controller::yerc::names::{register, register_address};
 use armctl_controller::yerc::query::Query as _;
 use armctl_controller::yerc::variables::{parse_numbers, plan_register_reads, plan_register_writes};
 use armctl_frame::failure::Kind as FailureKind;
-use armctl_frame::names;
 use armctl_frame::settings_report::{IF_DIFFERENT, OLD_VALUE};
 use armctl_frame::store::{Copy, Dump, Get, List, Restore, Row, TableWrite, WrittenOf, write};
 
@@ -77,7 +71,7 @@ impl Command for Set {
     const ID: &'static str = Registers::IDS.set;
     const RISK: Risk = Registers::RISK;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenOf<Registers>, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenOf<Registers>> {
         let Context { link, screen, robot, confirmer, .. } = context;
         let mut seen_numbers = HashSet::new();
         if let Some(twice) = self.assignments.iter().find(|assignment| !seen_numbers.insert(assignment.number)) {
@@ -157,11 +151,11 @@ impl Store for Registers {
         register_address(number)
     }
 
-    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self> {
         Ok(Self { model: Model::Dx200 })
     }
 
-    async fn prepare(&mut self, link: &mut Link, numbers: &[u16]) -> Result<(), Failure> {
+    async fn prepare(&mut self, link: &mut Link, numbers: &[u16]) -> Result<()> {
         self.model = link.model_for(|model| plan_register_reads(model, numbers)).await?;
         Ok(())
     }
@@ -194,7 +188,7 @@ impl Store for Registers {
         *value == 0
     }
 
-    async fn read(&self, link: &mut Link, _screen: &Screen, numbers: &[u16]) -> Result<Answers<u16>, Failure> {
+    async fn read(&self, link: &mut Link, _screen: &Screen, numbers: &[u16]) -> Result<Answers<u16>> {
         let plan = |numbers: &[u16]| plan_register_reads(self.model, numbers).map_err(usage);
         let answers = read_in_batches(link, plan, numbers, |_| BatchSplit::Halves, |_, _| {}).await?;
         let row = |number: &u16| match answers.get(number) {
@@ -217,12 +211,12 @@ impl Writable for Registers {
         texts.first().copied().flatten().map(parse_word).transpose()
     }
 
-    fn complete_draft(&self, number: u16, draft: &Option<u16>, _old: Option<&u16>) -> Result<u16, Failure> {
+    fn complete_draft(&self, number: u16, draft: &Option<u16>, _old: Option<&u16>) -> Result<u16> {
         let missing = || Failure::usage(format!("{}: the value is missing", Self::name(number)));
         draft.ok_or_else(|| missing().hint("write a number from 0 to 65535 in column `value`"))
     }
 
-    async fn read_old(&self, link: &mut Link, screen: &Screen, rows: &[Row<Self>]) -> Result<Answers<u16>, Failure> {
+    async fn read_old(&self, link: &mut Link, screen: &Screen, rows: &[Row<Self>]) -> Result<Answers<u16>> {
         let numbers: Vec<u16> = rows.iter().map(|(number, _)| *number).collect();
         self.read(link.for_purpose(OLD_VALUE), screen, &numbers).await
     }
@@ -237,7 +231,7 @@ impl Writable for Registers {
         }
     }
 
-    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<()> {
         let values = |unknown: u16| rows.iter().map(move |(number, value)| (*number, value.unwrap_or(unknown)));
         let steps = |unknown| plan_register_writes(self.model, &values(unknown).collect::<Vec<_>>()).map_err(usage);
         for (step, other) in steps(0)?.iter().zip(steps(u16::MAX)?) {
@@ -248,7 +242,7 @@ impl Writable for Registers {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<()> {
         let values: Vec<(u16, u16)> = rows.iter().map(|(number, _, new)| (*number, **new)).collect();
         for step in plan_register_writes(self.model, &values).map_err(usage)? {
             link.ask(&step).await?;
@@ -259,7 +253,6 @@ impl Writable for Registers {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::Value;
 
     use super::*;
     use crate::testing::Bench;

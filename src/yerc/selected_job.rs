@@ -1,7 +1,6 @@
 //! Job that a start runs: the text of the confirmation, and a check after the confirmation that the job is still the
 //! same.
 
-use super::link::Link;
 use crate::failure::refusal_failure;
 use crate::prelude::*;
 use armctl_controller::units;
@@ -22,7 +21,7 @@ pub enum SelectedJob {
 
 impl SelectedJob {
     /// Reads the job of the master task (FS and DX 3.3.4).
-    pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
+    pub async fn ask(link: &mut Link) -> Result<Self> {
         let unread = |failure: &Failure| Self::Unread(failure.message.trim_end_matches('.').to_owned());
         let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
         match link.for_purpose("selected job").ask_optional(&question).await {
@@ -86,7 +85,7 @@ impl SelectedJob {
     }
 
     /// Rejects the start if the selected job has changed since the question.
-    pub async fn check_unchanged(&self, link: &mut Link) -> Result<(), Failure> {
+    pub async fn check_unchanged(&self, link: &mut Link) -> Result<()> {
         let now = Self::ask(link).await?;
         if now == *self {
             return Ok(());

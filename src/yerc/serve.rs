@@ -2,9 +2,6 @@
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
-use std::path::PathBuf;
-
-use anyhow::Context as _;
 
 use crate::file::twin;
 use crate::prelude::*;
@@ -14,7 +11,6 @@ use armctl_controller::yerc::simulator::Simulator;
 use armctl_frame::backup::recording::ReplayArguments;
 use armctl_frame::backup::twin::note;
 use armctl_frame::serve::{self, Started, address, bind_failure};
-use armctl_frame::settings::target::Family;
 use armctl_transport::fault::{FaultSpec, Faults};
 use armctl_transport::server::Server;
 
@@ -81,7 +77,7 @@ impl serve::Serve for Serve {
     type Report = Serving;
     type Server = Yerc;
 
-    async fn start(self) -> Result<Started<Self>, Failure> {
+    async fn start(self) -> Result<Started<Self>> {
         let model = self.model.unwrap_or(Model::Dx200);
         let start = simulator_start::start(self.state.as_deref(), self.from.as_deref(), model, self.fault.as_ref())?;
         simulator_start::check_model(&start, self.model)?;
@@ -117,8 +113,8 @@ pub struct Yerc {
 }
 
 impl serve::Server for Yerc {
-    async fn run_until_change(&mut self) -> io::Result<()> {
-        self.server.turn(&mut self.simulated).await
+    fn run_until_change(&mut self) -> LocalBoxFuture<'_, io::Result<()>> {
+        self.server.turn(&mut self.simulated).boxed_local()
     }
 
     fn console(&mut self, line: &str) -> Result<String, String> {

@@ -1,25 +1,14 @@
 //! Start state of a simulated controller.
 
-use std::path::Path;
-
-use anyhow::Context as _;
-
-use crate::prelude::*;
+use crate::prelude::basics::*;
 pub use armctl_client::yerc::Simulated;
 use armctl_controller::yerc::simulator::Start;
-use armctl_files as files;
 use armctl_frame::backup::twin;
-use armctl_frame::settings::target::Family;
 use armctl_transport::fault::FaultSpec;
 
 /// Start state with the busy rate of the faults. It comes from a state file or a backup, or is the built-in state of
 /// the model.
-pub fn start(
-    state: Option<&Path>,
-    from: Option<&Path>,
-    model: Model,
-    faults: Option<&FaultSpec>,
-) -> Result<Start, Failure> {
+pub fn start(state: Option<&Path>, from: Option<&Path>, model: Model, faults: Option<&FaultSpec>) -> Result<Start> {
     let start = match (from, state) {
         (Some(folder), _) => twin::start(Family::Yerc, folder)?,
         (None, Some(file)) => load(file)?,
@@ -32,7 +21,7 @@ pub fn start(
 }
 
 /// Checks that a start state is for the model that the user selected, if any.
-pub fn check_model(start: &Start, selected: Option<Model>) -> Result<(), Failure> {
+pub fn check_model(start: &Start, selected: Option<Model>) -> Result<()> {
     let Some(selected) = selected.filter(|model| *model != start.model()) else { return Ok(()) };
     let message = format!("the start state is for model {}, but the selected model is {selected}", start.model());
     Err(Failure::usage(message).hint("remove --model, or change the file"))
@@ -41,7 +30,7 @@ pub fn check_model(start: &Start, selected: Option<Model>) -> Result<(), Failure
 /// Maximum size of a file. It is larger than the storage of a controller.
 const MAX_FILE_SIZE: u64 = 256 << 20;
 
-fn load(path: &Path) -> Result<Start, Failure> {
+fn load(path: &Path) -> Result<Start> {
     let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
     // The paths of files that the state names are relative to the folder of the state.
     let folder = path.parent().unwrap_or(Path::new(""));

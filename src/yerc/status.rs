@@ -3,10 +3,9 @@
 use super::alarm::{plan_latest, present};
 use super::link::{Link, Yerc};
 use super::overview::state;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::yerc::payload::{ControllerStatus, CycleMode, StatusBit};
 use armctl_controller::yerc::query::ReadStatus;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::state::{Fault, State};
 
 /// Shows all status bits of the controller.
@@ -18,7 +17,7 @@ impl Command for Status {
     type Report = StatusReport;
     const ID: &'static str = "yerc.status";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<StatusReport, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<StatusReport> {
         let link = context.link;
         let Some(status) = link.ask(&ReadStatus).await.known()? else {
             plan_latest(link)?;
@@ -29,7 +28,7 @@ impl Command for Status {
 }
 
 /// Present fault: the latest alarm, which is read if there is an alarm. An error has no number in this report.
-pub(super) async fn fault(link: &mut Link, status: ControllerStatus) -> Result<Fault, Failure> {
+pub(super) async fn fault(link: &mut Link, status: ControllerStatus) -> Result<Fault> {
     let alarms = if status.alarm() { present(link, &mut true, 1).await? } else { Vec::new() };
     Ok(Fault::new(status.faulted(), alarms.first()))
 }

@@ -1,11 +1,6 @@
 //! `yerc teach`: stores the current position of a group in a position variable. The aliases are `position teach P5` and
 //! `var set P5=here`.
 
-use clap::ValueEnum;
-
-use super::complete;
-use super::control_commands::usage;
-use super::link::{Link, Yerc};
 use super::moves::{compared, is_standing, moved_during_question};
 use super::position;
 use super::var::{PositionData, as_position, different_words, is_undefined, stored_position, variable_name};
@@ -15,8 +10,6 @@ use crate::prelude::*;
 use armctl_controller::names::Kind;
 use armctl_controller::yerc::query::{Coordinates, Query as _, ReadPosition, ReadVariable, WriteVariable};
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
-use armctl_frame::dry_run::unknown;
-use armctl_frame::names;
 use armctl_frame::teach::{TeachReport, mismatch, unverified};
 
 /// Stores the current position of a group in a position variable and reads it back (FS and DX 3.3.6, 3.3.16 to
@@ -81,7 +74,7 @@ impl Command for Teach {
         format!("overwrite {}", self.variable)
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Self::Report, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Self::Report> {
         let Context { link, confirmer, robot, screen, .. } = context;
         let label = variable_name(names::of_robot(robot, screen), self.variable);
         let (name, group) = (self.variable.to_string(), self.group()?);
@@ -118,7 +111,7 @@ impl Command for Teach {
 
 impl Teach {
     /// Control group of the position. It must match the kind of the variable.
-    fn group(&self) -> Result<Group, Failure> {
+    fn group(&self) -> Result<Group> {
         let (first, what) = match self.variable.kind {
             VariableKind::Bp => (Group::Base(1), "bases, such as B1"),
             VariableKind::Ex => (Group::Station(1), "stations, such as S1"),
@@ -138,7 +131,7 @@ impl Teach {
     }
 
     /// Content of the variable; `None` if the variable is undefined.
-    async fn read(&self, link: &mut Link) -> Result<Option<Value>, Failure> {
+    async fn read(&self, link: &mut Link) -> Result<Option<Value>> {
         match link.ask_optional(&ReadVariable::new(self.variable.kind, self.variable.number)).await? {
             Ok(value) => Ok(Some(value)),
             Err(refusal) if is_undefined(&ReadError::Refused(refusal)) => Ok(None),
@@ -148,7 +141,7 @@ impl Teach {
 
     /// Coordinates to store: the requested coordinates. Without a request, the type that the variable has, or pulses if
     /// the variable is undefined.
-    fn coordinates(&self, old: Option<&Value>) -> Result<Coordinates, Failure> {
+    fn coordinates(&self, old: Option<&Value>) -> Result<Coordinates> {
         match (self.coordinates, old.map(as_position).map(|old| old.kind)) {
             (Some(stored), _) => Ok(stored.into()),
             (None, None | Some(PositionKind::Pulse)) => Ok(Coordinates::Pulse),
@@ -185,7 +178,7 @@ impl Teach {
     }
 
     /// In a dry run, records what follows the first read.
-    async fn plan(&self, link: &mut Link, group: Group) -> Result<Failure, Failure> {
+    async fn plan(&self, link: &mut Link, group: Group) -> Result<Failure> {
         let model = link.model_for(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
         let asked = |coordinates| ReadPosition::new(model, group, coordinates).map_err(usage);
         let coordinates = self.coordinates.map_or(Coordinates::Pulse, Coordinates::from);

@@ -1,13 +1,8 @@
 //! Test support: the frames that a command line sends, and commands that run on a simulator in virtual time.
 
-use serde_json::Value;
-
-use super::link::Link;
-use super::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::text::hex;
 use armctl_frame::face::Face;
-use armctl_frame::face::registration::Registered;
 use armctl_frame::output::{ColorChoice, Format};
 use armctl_frame::settings_report::IF_DIFFERENT;
 use armctl_frame::testing;
@@ -30,19 +25,19 @@ pub(super) fn intent(words: &str) -> String {
 
 /// Frames that `armctl yerc -t TARGET WORDS…` would send (`data.frames` of a dry run). An error of the parser is
 /// returned as a failure.
-pub(super) fn dry_run(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
+pub(super) fn dry_run(target: &str, words: &[&str]) -> Result<Vec<Value>> {
     let (robot, command) = resolve_robot(target, words)?;
     Ok(testing::frames(&planned::<Yerc>(&robot, &*command, |_| ())?))
 }
 
 /// Frames of a dry run in hexadecimal, without the header: command, instance, attribute, service, padding, data.
-pub(super) fn frames_on(target: &str, words: &str) -> Result<Vec<String>, Failure> {
+pub(super) fn frames_on(target: &str, words: &str) -> Result<Vec<String>> {
     let frames = dry_run(target, &words.split_ascii_whitespace().collect::<Vec<_>>())?;
     Ok(frames.iter().map(without_header).collect())
 }
 
 /// Frames as in [`frames_on`], for a DX200.
-pub(super) fn frames(words: &str) -> Result<Vec<String>, Failure> {
+pub(super) fn frames(words: &str) -> Result<Vec<String>> {
     frames_on(DX200, words)
 }
 
@@ -65,7 +60,7 @@ pub(super) fn same(id: &str, target: &str, words: &[&str]) {
 }
 
 /// Runs several command lines on one simulator, which starts in `state` (TOML). Returns the data of their reports.
-pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value, Failure>> {
+pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value>> {
     let mut file = tempfile::NamedTempFile::new().unwrap();
     std::io::Write::write_all(&mut file, state.as_bytes()).unwrap();
     let target = format!("sim:?state={}", file.path().display());
@@ -105,7 +100,7 @@ impl Bench {
 
     /// Runs `armctl yerc WORDS…`. Returns the data of the report. If the report contains a failure, it is returned as
     /// well.
-    pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
+    pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>)> {
         let (_, command) = resolve_robot("sim:", words)?;
         let Self { runtime, robot, link } = self;
         let report = runtime.block_on(testing::run::<Yerc>(&*command, context(robot, link)))?;
@@ -123,10 +118,10 @@ impl Bench {
 }
 
 /// The family.
-const FACE: &dyn Face = &Registered::<Yerc>::FACE;
+const FACE: &Face = &Face::of::<Yerc>();
 
 /// Robot and command of a command line.
-pub(super) fn resolve_robot(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
+pub(super) fn resolve_robot(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>)> {
     testing::resolve(FACE, target, words)
 }
 

@@ -1,7 +1,6 @@
 //! Live view of a robot: status and position in one line, and axes, torque, alarms and signals in the detail view.
 
 use super::alarm::{SLOTS, present};
-use super::link::{Link, Yerc};
 use super::overview::report;
 use super::position::{CARTESIAN_AXES, ROBOT_AXES, decimal};
 use crate::prelude::*;
@@ -34,11 +33,11 @@ const GROUPS: u16 = 4;
 impl registration::Poller for Poller {
     type Family = Yerc;
 
-    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
+    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self> {
         Ok(Self { link: Yerc::connect(robot, access, screen).await?, texts: true })
     }
 
-    async fn look(&mut self, detail: Detail) -> Result<Sample, Failure> {
+    async fn look(&mut self, detail: Detail) -> Result<Sample> {
         let (status, answered_in) = clocked(self.link.ask(&ReadStatus)).await;
         let status = status?;
         // A controller without a first robot has no position. This is not a failure.
@@ -65,18 +64,13 @@ impl registration::Poller for Poller {
         &mut self.link
     }
 
-    async fn close(self, screen: &Screen) -> Result<(), Failure> {
+    async fn close(self, screen: &Screen) -> Result<()> {
         Yerc::close(self.link, screen).await
     }
 }
 
 impl Poller {
-    async fn whole(
-        &mut self,
-        detail: Detail,
-        status: ControllerStatus,
-        base: Option<&Position>,
-    ) -> Result<Whole, Failure> {
+    async fn whole(&mut self, detail: Detail, status: ControllerStatus, base: Option<&Position>) -> Result<Whole> {
         let model = self.link.model_for_display();
         let pulses = self.position(Coordinates::Pulse).await?;
         let torque = self.ask(ReadTorque::new(model, Group::R1)).await?;
@@ -95,7 +89,7 @@ impl Poller {
         Ok(Whole { indicators: indicators(status), axes, torque_unit, banks, not_asked: None })
     }
 
-    async fn position(&mut self, coordinates: Coordinates) -> Result<Option<Position>, Failure> {
+    async fn position(&mut self, coordinates: Coordinates) -> Result<Option<Position>> {
         let position = self.ask(ReadPosition::new(self.link.model_for_display(), Group::R1, coordinates)).await?;
         let Some(position) = position else { return Ok(None) };
         let (axes, _) = self.link.existing_axes(Group::R1, coordinates, position.axes).await;
@@ -103,7 +97,7 @@ impl Poller {
     }
 
     /// Reads an optional value. A refusal gives `None`.
-    async fn ask<Q: Query>(&mut self, query: Result<Q, QueryError>) -> Result<Option<Q::Answer>, Failure> {
+    async fn ask<Q: Query>(&mut self, query: Result<Q, QueryError>) -> Result<Option<Q::Answer>> {
         let query = query.map_err(|error| Failure::local(error.to_string()))?;
         Ok(self.link.ask_optional(&query).await?.ok())
     }

@@ -2,9 +2,8 @@
 
 use std::net::SocketAddr;
 
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::yerc::describe::{Sender, summary};
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::wire::RequestFrame;
 use armctl_frame::trace;
 use armctl_transport::tap::Direction;
@@ -19,7 +18,7 @@ pub struct Trace {
 
 impl Trace {
     /// Opens the trace that the options request.
-    pub fn open(access: &Access, screen: &Screen) -> Result<Self, Failure> {
+    pub fn open(access: &Access, screen: &Screen) -> Result<Self> {
         Ok(Self { record: trace::Trace::of_network(access, screen)?, asked: None })
     }
 
@@ -44,7 +43,7 @@ impl Trace {
     }
 
     /// Closes the trace. Returns a failure if the trace is incomplete.
-    pub fn finish(&mut self) -> Result<(), Failure> {
+    pub fn finish(&mut self) -> Result<()> {
         self.record.finish()
     }
 }

@@ -1,13 +1,9 @@
 //! Wireshark dissector of the high-speed Ethernet server, from the command table.
 
-use serde_json::{Value, json};
-
 use super::decode::IDENTIFIER;
+use crate::prelude::basics::*;
 use armctl_client::yerc::PORTS;
 use armctl_controller::units::{self, Unit};
-use armctl_controller::yerc::Model;
-use armctl_controller::yerc::payload::PositionKind;
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::status;
 use armctl_controller::yerc::table::{
     Action, Attribute, BATCH_BACKUP_PATH, Bit, Field, Instances, Kind, ROWS, RiskRule, Row, Service, service,

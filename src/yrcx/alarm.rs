@@ -1,12 +1,9 @@
 //! Commands `yrcx alarm list|history|watch|reset` (4.7.7, 4.8.3).
 
 use super::info::{Part, entry};
-use super::link::{Link, Yrcx};
 use super::number_arguments::Numbers;
 use super::read_requests::ask_each;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::face::shared_commands::CommonReport;
 use armctl_frame::failure;
 use armctl_frame::items::ItemOutcome;
@@ -40,7 +37,7 @@ impl Command for List {
     type Report = Alarms<Part, Signals>;
     const ID: &'static str = "yrcx.alarm.list";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Alarms<Part, Signals>, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Alarms<Part, Signals>> {
         let link = context.link;
         let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).valid_order()?;
         if link.is_dry_run() {
@@ -65,7 +62,7 @@ impl Command for List {
 
 /// Reads the latest entry of the history; `None` if the history is empty or was not read. An entry has no time, so if
 /// an alarm occurs a second time, its entry is equal to the first entry.
-pub(super) async fn latest(link: &mut Link) -> Result<Option<AlarmEntry<Part>>, Failure> {
+pub(super) async fn latest(link: &mut Link) -> Result<Option<AlarmEntry<Part>>> {
     let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).valid_order()?;
     if link.is_dry_run() {
         link.plan(&latest, "latest alarm, to recognize a new alarm");
@@ -79,7 +76,7 @@ pub(super) async fn latest(link: &mut Link) -> Result<Option<AlarmEntry<Part>>, 
 }
 
 /// Adds the text of `alarms.toml`.
-fn explained(entry: AlarmEntry<Part>, robot: &Robot) -> Result<AlarmEntry<Part>, Failure> {
+fn explained(entry: AlarmEntry<Part>, robot: &Robot) -> Result<AlarmEntry<Part>> {
     let code = entry.alarm.code.clone().unwrap_or_default();
     Ok(AlarmEntry { alarm: entry.alarm.with(alarms::find(robot, &code)?), ..entry })
 }
@@ -126,11 +123,11 @@ impl Command for History {
     type Report = Alarms<Part>;
     const ID: &'static str = "yrcx.alarm.history";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Alarms<Part>, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Alarms<Part>> {
         let Context { link, screen, robot, .. } = context;
         let numbers = Numbers::of(&self.numbers);
         let order = |number: &i32| link.draft(table::Command::AlarmHistory)?.with(Key::History, *number).valid_order();
-        let orders = numbers.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
+        let orders = numbers.iter().map(order).collect::<Result<Vec<Order>>>()?;
         let answers = ask_each(link, screen, "reading alarms", &orders).await?;
         let mut alarms = Vec::new();
         for (number, answer) in numbers.iter().zip(answers.outcomes) {
@@ -164,7 +161,7 @@ impl Command for Reset {
         table::Command::AlarmReset.row().risk
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WasReset, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WasReset> {
         let Context { link, screen, .. } = context;
         let order = link.draft(table::Command::AlarmReset)?.valid_order()?;
         let old = Old::read(link.look().await.known()?.map(|image| output::ALARM.is_on(&image)));

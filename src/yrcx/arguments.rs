@@ -1,11 +1,8 @@
 //! Arguments that several motion commands use. Numbers stay text: the codec parses each number in the unit of its field
 //! and checks the range.
 
-use clap::ValueEnum;
-
 use super::position::Unit;
 use crate::prelude::*;
-use armctl_controller::user_input;
 use armctl_controller::yrcx::table::Command;
 use armctl_frame::wait_arguments::MotionEnd;
 
@@ -65,7 +62,7 @@ fn speed(text: &str) -> Result<Speed, String> {
 
 impl SpeedArguments {
     /// Sets the speed for a motion of axes; a speed in mm/s is an error.
-    pub fn apply_to(&self, draft: Draft) -> Result<Draft, Failure> {
+    pub fn apply_to(&self, draft: Draft) -> Result<Draft> {
         match &self.speed {
             Some(Speed::MmS(_)) => Err(Failure::usage("a speed in mm/s needs a linear or circular move")
                 .hint("use percent, such as --speed 50, or add --linear")),
@@ -107,7 +104,7 @@ pub struct Ramps {
 
 impl Ramps {
     /// Sets acceleration and deceleration, if the command has the fields.
-    pub fn apply_to(&self, draft: Draft, command: Command) -> Result<Draft, Failure> {
+    pub fn apply_to(&self, draft: Draft, command: Command) -> Result<Draft> {
         let row = command.row();
         if (self.accel.is_some() || self.decel.is_some()) && row.request().all(|field| field.key != Key::Accel) {
             return Err(Failure::usage(format!("{} has neither --accel nor --decel", row.id)).hint(
@@ -134,7 +131,7 @@ impl Axes {
     }
 
     /// Sets the axes that move, and a number for each axis; see [`Axes::pairs`].
-    pub fn apply_numbers(&self, draft: Draft, given: &[String]) -> Result<Draft, Failure> {
+    pub fn apply_numbers(&self, draft: Draft, given: &[String]) -> Result<Draft> {
         let pairs = self.pairs(given)?;
         let draft = if self.names_axes(given) {
             let axes: Vec<String> = pairs.iter().map(|(axis, _)| axis.to_string()).collect();
@@ -147,7 +144,7 @@ impl Axes {
 
     /// Returns a pair of axis (1 to 4) and number for each number, in the order typed. `--axes 3,2 --to 10,20` and
     /// `--to 3=10,2=20` give equal pairs.
-    pub fn pairs<'a>(&self, given: &'a [String]) -> Result<Vec<(usize, &'a str)>, Failure> {
+    pub fn pairs<'a>(&self, given: &'a [String]) -> Result<Vec<(usize, &'a str)>> {
         let named: Vec<Option<(&str, &str)>> = given.iter().map(|text| text.split_once('=')).collect();
         let pairs: Vec<(usize, &str)> = match named.into_iter().collect::<Option<Vec<_>>>() {
             Some(_) if self.axes.is_some() => {
@@ -156,7 +153,7 @@ impl Axes {
             }
             Some(named) => {
                 let pairs = named.into_iter().map(|(name, text)| axis(name).map(|axis| (axis, text.trim())));
-                pairs.collect::<Result<_, Failure>>()?
+                pairs.collect::<Result<_>>()?
             }
             None if given.iter().any(|text| text.contains('=')) => {
                 return Err(Failure::usage("some numbers have an axis, and other numbers have no axis")
@@ -186,7 +183,7 @@ impl Axes {
         self.axes.is_some() || given.iter().any(|text| text.contains('='))
     }
 
-    fn numbers(&self) -> Result<Vec<usize>, Failure> {
+    fn numbers(&self) -> Result<Vec<usize>> {
         let Some(axes) = &self.axes else { return Ok((1..=4).collect()) };
         let wrong = || format!("'{axes}' is not a valid list of axes from 1 to 4, such as 1,3");
         let number = |text: &str| axis(text).map_err(|_| wrong());
@@ -236,7 +233,7 @@ impl Axes {
 }
 
 /// Parses an axis number.
-fn axis(text: &str) -> Result<usize, Failure> {
+fn axis(text: &str) -> Result<usize> {
     match text.trim().parse() {
         Ok(axis @ 1..=4) => Ok(axis),
         _ => {

@@ -3,7 +3,6 @@
 use std::marker::PhantomData;
 
 use super::fieldbus::BusBoard;
-use super::link::Yrcx;
 use crate::prelude::*;
 
 /// A report that is read with explicit messages. These messages open no I/O connection, start no polls, and lock
@@ -18,7 +17,7 @@ pub trait BoardReport: Report + Sized + 'static {
     const MESSAGES: &'static str;
 
     /// Reads the report.
-    async fn read(board: &mut Self::Board) -> Result<Self, Failure>;
+    async fn read(board: &mut Self::Board) -> Result<Self>;
 }
 
 /// Reads a report.
@@ -35,7 +34,7 @@ impl<R: BoardReport> Command for ReadBoard<R> {
     const ID: &'static str = R::ID;
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<R, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<R> {
         let link = context.link;
         link.reject_unit_of::<R::Board>()?;
         link.then(R::MESSAGES);

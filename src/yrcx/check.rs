@@ -1,12 +1,11 @@
 //! Checks of the controller for `armctl robots check`. They open no connection for images.
 
 use super::connect::endpoint;
-use super::link::Yrcx;
 use super::overview::left_over;
 use crate::prelude::*;
 use armctl_controller::yrcx::answer::Status;
 use armctl_frame::Family as _;
-use armctl_frame::face::layers::{Layer, Layers};
+use armctl_frame::face::layers::Layer;
 use armctl_frame::session_client::is_held;
 use armctl_frame::settings::Sessions;
 
@@ -15,7 +14,7 @@ const SIGNALS: [&str; 8] = ["CPU", "emergency stop", "alarm", "remote command", 
 
 /// Checks the layers. It only reads. If a session is open, the check reads the image through the session and opens no
 /// second connection for images.
-pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
+pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>> {
     let fieldbus = endpoint(robot)?.fieldbus();
     let [first, .., last] = fieldbus.layers else {
         return Err(Failure::local("internal error: a fieldbus without layers"));
@@ -50,7 +49,7 @@ pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec
 }
 
 /// Reads the image of the controller through the session that keeps the connection open.
-async fn through_session(robot: &Robot, access: Access, screen: &Screen) -> Result<Image, Failure> {
+async fn through_session(robot: &Robot, access: Access, screen: &Screen) -> Result<Image> {
     let robot = Robot { sessions: Sessions::Only, ..robot.clone() };
     let access = Access { mode: ConnectMode::Monitor, trace: None, ..access };
     let mut link = Yrcx::connect(&robot, access, screen).await?;

@@ -4,10 +4,8 @@ use jiff::Zoned;
 use jiff::civil::{Date, DateTime, Time};
 
 use super::confirmed_write::read_current;
-use super::link::{Link, Yrcx};
 use super::read_requests::ask_each;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_frame::items;
 use armctl_frame::items::ItemError;
 use armctl_frame::robot::item::{Item, Written, WrittenItems};
@@ -37,7 +35,7 @@ impl Command for Get {
     type Report = Reading;
     const ID: &'static str = "yrcx.clock.get";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Reading, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Reading> {
         let Context { link, screen, .. } = context;
         let order = |command| link.draft(command)?.valid_order();
         let orders = [order(table::Command::DateGet)?, order(table::Command::TimeGet)?];
@@ -58,13 +56,13 @@ impl Command for Get {
     }
 }
 
-fn date_of(values: &Values) -> Result<Date, Failure> {
+fn date_of(values: &Values) -> Result<Date> {
     let [year, month, day] = DATE.map(|key| values.int(key).and_then(|number| i8::try_from(number).ok()).unwrap_or(-1));
     let date = if year < 0 { None } else { Date::new(CENTURY + i16::from(year), month, day).ok() };
     date.ok_or_else(|| malformed(format!("the controller reported an invalid date: {year}-{month}-{day}")))
 }
 
-fn time_of(values: &Values) -> Result<Time, Failure> {
+fn time_of(values: &Values) -> Result<Time> {
     let [hour, minute, second] =
         TIME.map(|key| values.int(key).and_then(|number| i8::try_from(number).ok()).unwrap_or(-1));
     let time = Time::new(hour, minute, second, 0);
@@ -92,7 +90,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    fn of(date: Result<Date, Failure>, time: Result<Time, Failure>, now: DateTime) -> Self {
+    fn of(date: Result<Date>, time: Result<Time>, now: DateTime) -> Self {
         let moment = date.as_ref().ok().zip(time.as_ref().ok()).map(|(date, time)| date.to_datetime(*time));
         Self {
             time: moment.map(|moment| moment.to_string()),
@@ -209,7 +207,7 @@ impl Command for Set {
     const ID: &'static str = "yrcx.clock.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WrittenItems<String>, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WrittenItems<String>> {
         let link = context.link;
         let (date, time) = match self.moment {
             Moment::Given { date, time } => (date, time),
@@ -239,13 +237,13 @@ impl Command for Set {
 }
 
 /// The date or the time that was set, or why it was not.
-fn written(name: &str, outcome: Result<String, Failure>, old: Option<String>) -> Written<String> {
+fn written(name: &str, outcome: Result<String>, old: Option<String>) -> Written<String> {
     let is_written = outcome.is_ok();
     Written::new(Item::new("clock", name, outcome.map(Some)), old, is_written)
 }
 
 /// Reads the current date, time, or both: the values that armctl will set. Values that cannot be read stay unknown.
-async fn read_before(link: &mut Link, time: bool, date: bool) -> Result<[Option<String>; 2], Failure> {
+async fn read_before(link: &mut Link, time: bool, date: bool) -> Result<[Option<String>; 2]> {
     let mut found = [None, None];
     if date {
         let order = link.draft(table::Command::DateGet)?.valid_order()?;
@@ -260,13 +258,13 @@ async fn read_before(link: &mut Link, time: bool, date: bool) -> Result<[Option<
     Ok(found)
 }
 
-fn date_order(link: &Link, date: Date) -> Result<Order, Failure> {
+fn date_order(link: &Link, date: Date) -> Result<Order> {
     let numbers = [i32::from(date.year() - CENTURY), i32::from(date.month()), i32::from(date.day())];
     let draft = link.draft(table::Command::DateSet)?;
     DATE.into_iter().zip(numbers).fold(draft, |draft, (key, number)| draft.with(key, number)).valid_order()
 }
 
-fn time_order(link: &Link, time: Time) -> Result<Order, Failure> {
+fn time_order(link: &Link, time: Time) -> Result<Order> {
     let numbers = [time.hour(), time.minute(), time.second()].map(i32::from);
     let draft = link.draft(table::Command::TimeSet)?;
     TIME.into_iter().zip(numbers).fold(draft, |draft, (key, number)| draft.with(key, number)).valid_order()
@@ -275,7 +273,6 @@ fn time_order(link: &Link, time: Time) -> Result<Order, Failure> {
 #[cfg(test)]
 mod tests {
     use jiff::civil::datetime;
-    use serde_json::json;
 
     use super::*;
     use crate::testing::{Reply, Scripted, objection, read_in_turn, report_on, run_on, words};

@@ -1,10 +1,8 @@
 //! Result of a remote command.
 
-use std::time::Duration;
-
 use serde_json::Value as Json;
 
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_client::yrcx;
 
 /// Result of a command.

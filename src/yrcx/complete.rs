@@ -2,14 +2,11 @@
 
 use std::ops::RangeInclusive;
 
-use futures_util::FutureExt as _;
-
+use crate::prelude::basics::*;
 use armctl_controller::names::Kind;
-use armctl_controller::yrcx::signal::{Side, Signal};
 use armctl_controller::yrcx::table::parameter::PARAMETERS;
-use armctl_frame::settings::target::Family;
+use armctl_frame::Candidate;
 use armctl_frame::value_kind::{Ask, Named, rows, text};
-use armctl_frame::{Candidate, ValueKind};
 
 /// Name of an input signal.
 pub const INPUT: ValueKind = named(&[Kind::Signal], &[""], || signals(Side::Input, ""));

@@ -5,7 +5,6 @@ use serde_json::Value as Json;
 
 use super::command_result::{CommandResult, ReplacedRow};
 use super::data::{Comments, Hands, Pallets, Points, Shifts};
-use super::link::{Link, Yrcx};
 use super::numbered_tables::{Kind, Numbered, Row};
 use super::old_values::{question, read_old_values};
 use super::param::{Amount, Parameters, Setting};
@@ -13,10 +12,8 @@ use super::position::Unit;
 use super::read_requests::{check_echo, refuses_all_commands};
 use super::refusal::refused;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::table::Command;
 use armctl_controller::yrcx::table::parameter::Parameter;
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::robot::item::{Item, Written, WrittenItems, as_requested};
 use armctl_frame::store::{describe_change, overwriting};
 
@@ -36,7 +33,7 @@ pub async fn execute_confirmed(
     confirmer: &Confirmer<'_>,
     order: &Order,
     intent: String,
-) -> Result<CommandResult, Failure> {
+) -> Result<CommandResult> {
     if !overwrites(order) {
         // The robot is not reserved while a question is open.
         if !confirmer.asks_user() {
@@ -56,7 +53,7 @@ pub async fn execute_with_alternative(
     confirmer: &Confirmer<'_>,
     order: &Order,
     other: &Order,
-) -> Result<CommandResult, Failure> {
+) -> Result<CommandResult> {
     let replaced = confirm(link, confirmer, order).await?;
     if replaced.is_unchanged {
         return Ok(CommandResult { replaced: Some(replaced), ..CommandResult::default() });
@@ -88,7 +85,7 @@ fn overwrites(order: &Order) -> bool {
 }
 
 /// Reads the row that a command overwrites, and asks the user for confirmation. A dry run notes the reads.
-pub async fn confirm(link: &mut Link, confirmer: &Confirmer<'_>, order: &Order) -> Result<ReplacedRow, Failure> {
+pub async fn confirm(link: &mut Link, confirmer: &Confirmer<'_>, order: &Order) -> Result<ReplacedRow> {
     match order.command() {
         _ if !overwrites(order) => {
             confirmer.confirm(&Change::new(order.row().name)).await?;
@@ -106,24 +103,20 @@ pub async fn confirm(link: &mut Link, confirmer: &Confirmer<'_>, order: &Order) 
 /// A table whose rows remote commands overwrite.
 trait OverwritableTable: Writable<Family = Yrcx> {
     /// The table and the row that a command overwrites.
-    fn target(order: &Order) -> Result<(Self, Self::Key), Failure>;
+    fn target(order: &Order) -> Result<(Self, Self::Key)>;
 
     /// Request that reads a row.
-    fn read_order(&self, key: Self::Key) -> Result<Order, Failure>;
+    fn read_order(&self, key: Self::Key) -> Result<Order>;
 
     /// Content of a row from an answer.
     fn row(&self, key: Self::Key, values: Values) -> Self::Wire;
 
     /// Returns the new content of a row; a description in words if the content is not known in advance.
-    async fn replacement(
-        &self,
-        link: &mut Link,
-        order: &Order,
-        old: Option<&Values>,
-    ) -> Result<Result<Values, String>, Failure>;
+    async fn replacement(&self, link: &mut Link, order: &Order, old: Option<&Values>)
+    -> Result<Result<Values, String>>;
 
     /// Reads the row that a command overwrites, and asks for confirmation.
-    async fn confirm(link: &mut Link, confirmer: &Confirmer<'_>, order: &Order) -> Result<ReplacedRow, Failure> {
+    async fn confirm(link: &mut Link, confirmer: &Confirmer<'_>, order: &Order) -> Result<ReplacedRow> {
         let (table, key) = Self::target(order)?;
         let about = format!("old content of {}", Self::asked(key));
         let values = read_current(link, &table.read_order(key)?, &about).await?;
@@ -150,11 +143,11 @@ trait OverwritableTable: Writable<Family = Yrcx> {
 }
 
 impl<K: Kind> OverwritableTable for Numbered<K> {
-    fn target(order: &Order) -> Result<(Self, i32), Failure> {
+    fn target(order: &Order) -> Result<(Self, i32)> {
         Ok((Self::default(), order.values().int(K::READ.1).unwrap_or_default()))
     }
 
-    fn read_order(&self, number: i32) -> Result<Order, Failure> {
+    fn read_order(&self, number: i32) -> Result<Order> {
         Self::read_order(number)
     }
 
@@ -167,7 +160,7 @@ impl<K: Kind> OverwritableTable for Numbered<K> {
         link: &mut Link,
         order: &Order,
         old: Option<&Values>,
-    ) -> Result<Result<Values, String>, Failure> {
+    ) -> Result<Result<Values, String>> {
         let (command, values) = (order.command(), order.values());
         let number = |key| values.int(key).unwrap_or_default();
         Ok(match command {
@@ -199,7 +192,7 @@ impl<K: Kind> OverwritableTable for Numbered<K> {
 }
 
 impl OverwritableTable for Parameters {
-    fn target(order: &Order) -> Result<(Self, Setting), Failure> {
+    fn target(order: &Order) -> Result<(Self, Setting)> {
         let number = |key| order.values().int(key).unwrap_or_default();
         let unknown = || Failure::usage("this parameter does not exist").hint("see `yrcx param get -h`");
         let parameter = Parameter::from_number(number(Key::Parameter)).ok_or_else(unknown)?;
@@ -207,7 +200,7 @@ impl OverwritableTable for Parameters {
         Ok((Self { robot: u8::try_from(number(Key::Robot)).unwrap_or_default() }, (parameter, axis)))
     }
 
-    fn read_order(&self, key: Setting) -> Result<Order, Failure> {
+    fn read_order(&self, key: Setting) -> Result<Order> {
         Self::read_order(self, key)
     }
 
@@ -220,14 +213,14 @@ impl OverwritableTable for Parameters {
         _link: &mut Link,
         order: &Order,
         _old: Option<&Values>,
-    ) -> Result<Result<Values, String>, Failure> {
+    ) -> Result<Result<Values, String>> {
         Ok(Ok(order.values().clone()))
     }
 }
 
 /// Reads the current data; `None` in a dry run, or if the controller refuses, for example because the data is not
 /// defined.
-pub async fn read_current(link: &mut Link, order: &Order, about: &str) -> Result<Option<Values>, Failure> {
+pub async fn read_current(link: &mut Link, order: &Order, about: &str) -> Result<Option<Values>> {
     if link.is_dry_run() {
         link.plan(order, about);
         return Ok(None);

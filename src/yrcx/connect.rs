@@ -1,13 +1,10 @@
 //! Connection to a controller: over a fieldbus, or a simulator in this process.
 
-use std::fmt;
-
 use super::buses::{self, BUSES};
 use super::fieldbus::{self, Board, ConnectionParameters, Fieldbus, Purpose, Simulation};
-use super::link_error::not_open;
 use super::simulated;
 use super::trace::{Opening, Recorder};
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::settings::target::bus::simulators;
 use armctl_frame::settings::target::{self, Bus, Place};
 use armctl_transport::image::ImageLink;
@@ -23,7 +20,7 @@ pub enum Endpoint<'a> {
 }
 
 /// Endpoint of a robot's target.
-pub fn endpoint(robot: &Robot) -> Result<Endpoint<'_>, Failure> {
+pub fn endpoint(robot: &Robot) -> Result<Endpoint<'_>> {
     match &robot.target.value.place {
         Place::Bus(bus) => match buses::by_name(bus.scheme.bus) {
             Some(fieldbus) => Ok(Endpoint::Bus(bus, fieldbus)),
@@ -46,12 +43,7 @@ pub type OpenBoard = WithSimulator<Box<dyn Board>>;
 
 impl Endpoint<'_> {
     /// Opens a link, with a packet recorder if requested.
-    pub async fn open(
-        &self,
-        robot: &Robot,
-        access: &Access,
-        screen: &Screen,
-    ) -> Result<(ImageLink, Option<Recorder>), Failure> {
+    pub async fn open(&self, robot: &Robot, access: &Access, screen: &Screen) -> Result<(ImageLink, Option<Recorder>)> {
         let purpose = match self {
             // Faults of the network can only be simulated on a simulated network.
             Self::Sim(sim) if sim.bus.is_none() && !simulated::has_faults(sim) => {
@@ -74,7 +66,7 @@ impl Endpoint<'_> {
         robot: &Robot,
         access: &Access,
         screen: &Screen,
-    ) -> Result<(OpenBoard, Option<Recorder>), Failure> {
+    ) -> Result<(OpenBoard, Option<Recorder>)> {
         self.on_fieldbus(robot, access, screen, |fieldbus, at| (fieldbus.board)(at)).await
     }
 
@@ -86,7 +78,7 @@ impl Endpoint<'_> {
         access: &Access,
         screen: &Screen,
         open: impl for<'a> FnOnce(&'static Fieldbus, ConnectionParameters<'a>) -> fieldbus::Opening<'a, T>,
-    ) -> Result<(WithSimulator<T>, Option<Recorder>), Failure> {
+    ) -> Result<(WithSimulator<T>, Option<Recorder>)> {
         match *self {
             Self::Bus(bus, fieldbus) => {
                 let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type)?.unzip();
@@ -138,7 +130,7 @@ fn simulated_on(sim: &target::Sim) -> &'static Fieldbus {
 }
 
 /// Starts a simulated controller on its fieldbus.
-fn simulate(sim: &target::Sim) -> Result<(&'static Fieldbus, Simulation), Failure> {
+fn simulate(sim: &target::Sim) -> Result<(&'static Fieldbus, Simulation)> {
     let fieldbus = simulated_on(sim);
     Ok((fieldbus, (fieldbus.simulate)(sim)?))
 }

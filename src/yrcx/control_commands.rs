@@ -2,7 +2,6 @@
 //! inching distance (4.2.8), shift, hand and arm (4.2.17 to 4.2.19), servos (4.2.13), motor power (4.2.20), the status
 //! of remote commands (4.1).
 
-use clap::ValueEnum;
 use serde_json::Value as Json;
 
 use super::arguments::{Hand as HandSystem, UnitArgument};
@@ -147,7 +146,7 @@ one_row! {
             ServoState::Free => "free",
         };
         let done = NewValue::of("servo", state, format!("switched {} {state}", self.describe()));
-        done.with("axis", self.axis.as_deref().map_or(serde_json::Value::Null, number))
+        done.with("axis", self.axis.as_deref().map_or(Value::Null, number))
     };
 
     /// Switches the motor power of all robots.

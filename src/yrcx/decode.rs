@@ -3,8 +3,6 @@
 mod capture;
 pub mod images;
 
-use std::path::Path;
-
 pub use self::capture::ImageDecoder;
 use super::field_row::FieldRow;
 use super::raw::words;
@@ -49,7 +47,7 @@ impl decode::Decode for Decode {
     type Report = DecodedWords;
     type Capture = ImageDecoder;
 
-    fn capture(&self) -> Result<Option<(Input<'_>, ImageDecoder)>, Failure> {
+    fn capture(&self) -> Result<Option<(Input<'_>, ImageDecoder)>> {
         let input = match self.capture.as_slice() {
             [] => return Ok(None),
             [stdin] if stdin == "-" => Input::Bytes("stdin", stdin_bytes()?),
@@ -68,7 +66,7 @@ impl decode::Decode for Decode {
         self.every_image || self.selection.is_given()
     }
 
-    fn decode(&self) -> Result<DecodedWords, Failure> {
+    fn decode(&self) -> Result<DecodedWords> {
         let wi = self.wi.map(|wi| Part::new("command", command(&wi)));
         let wo = self.wo.map(|wo| Part::new("answer", answer(&wo, self.wi.as_ref())));
         Ok(DecodedWords { parts: wi.into_iter().chain(wo).collect() })
@@ -76,7 +74,7 @@ impl decode::Decode for Decode {
 }
 
 /// Parses telegrams in hexadecimal.
-fn telegrams(text: &str) -> Result<Vec<u8>, Failure> {
+fn telegrams(text: &str) -> Result<Vec<u8>> {
     let hint = "type telegrams as 68 05 05 68 …, or the name of a file";
     let bytes = parse_hex(text).map_err(|error| Failure::usage(error).hint(hint))?;
     if holds_telegram(&bytes) {
@@ -138,7 +136,6 @@ impl Report for DecodedWords {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_controller::yrcx::value::Key;
     use armctl_frame::decode::Decode as _;
 
     fn explained(wi: Option<&str>, wo: Option<&str>) -> DecodedWords {

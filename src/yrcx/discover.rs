@@ -1,9 +1,7 @@
 //! Fieldbus devices for `armctl robots discover`.
 
-use std::time::Duration;
-
 use schemars::{Schema, SchemaGenerator};
-use serde_json::{Map, Value};
+use serde_json::Map;
 
 use super::buses::{self, Searches};
 use super::fieldbus::{Device, Scope};
@@ -53,7 +51,7 @@ pub async fn discover(
     wait: Duration,
     access: &Access,
     screen: &Screen,
-) -> Result<Vec<FoundDevice>, Failure> {
+) -> Result<Vec<FoundDevice>> {
     let narrowest = scope(searches);
     let mut all = Vec::new();
     for (fieldbus, search) in searches.each() {

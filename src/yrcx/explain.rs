@@ -4,11 +4,9 @@ use super::buses::BUSES;
 use super::fieldbus::ErrorMeaning;
 use super::info::describe_alarm;
 use crate::prelude::*;
-use armctl_controller::yrcx::alarm::Alarm;
 use armctl_frame::face::explain::{self as face, Codes, Known};
 use armctl_frame::robot::alarm::{Alarm as CommandResults, ExtraColumns, Kind, Source};
 use armctl_frame::settings::alarms::{Alarms, Origin};
-use armctl_frame::settings::target::Family;
 
 /// Alarm number of a YRCX, or error of a PROFINET device
 #[derive(Debug, Args)]
@@ -38,7 +36,7 @@ impl face::Explain for Explain {
     type Report = Codes<Group>;
     const ID: &'static str = "explain.yrcx";
 
-    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes<Group>, Failure> {
+    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes<Group>> {
         let known = match &self.code {
             Code::Alarm(alarm) => {
                 let site = alarms.find(origin, &alarm.to_string())?;

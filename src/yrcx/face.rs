@@ -1,7 +1,5 @@
 //! Implementation of the family interface for `yrcx`.
 
-use std::path::Path;
-
 use clap::{ArgMatches, Args as _, FromArgMatches as _};
 
 use super::alarm as alarms;
@@ -9,11 +7,9 @@ use super::backup::{back_up, restore};
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
-use super::link::{Link, Yrcx};
 use super::procedure_commands::Stop;
 use super::serve::ServeArgs;
 use super::top::Poller;
-use super::trace::Recorder;
 use super::unit_argument::Unit;
 use super::{check, overview, session_link, teach_panel};
 use crate::prelude::*;
@@ -21,16 +17,10 @@ use armctl_controller::yrcx::{alarm, read_only_filter, simulator};
 use armctl_frame::FamilyArguments;
 use armctl_frame::backup::family_backup::Backups;
 use armctl_frame::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
-use armctl_frame::face::HeldLink;
-use armctl_frame::face::layers::Layer;
-use armctl_frame::face::overview::OverviewReport;
-use armctl_frame::face::registration::Declaration;
-use armctl_frame::face::sample::Traffic;
-use armctl_frame::face::teach_panel::Panel;
+use armctl_frame::face::{Declaration, HeldLink, Layer, OverviewReport, Panel, Traffic, Work};
 use armctl_frame::robot::alarm::Alarm;
-use armctl_frame::settings::target::{BUSES, Family};
+use armctl_frame::settings::target::BUSES;
 use armctl_transport::session::host::Guard;
-use armctl_transport::session::host::shared_link::SharedLink;
 
 impl Declaration for Yrcx {
     type Commands = Commands;
@@ -56,17 +46,18 @@ impl Declaration for Yrcx {
     const GUARD: Guard = Guard { is_harmless_data: |_| false, is_harmless_image: read_only_filter::only_stops };
     const SESSION_RECORDS: bool = true;
     const SESSION_COMMANDS: bool = true;
+    const DISSECTOR: fn() -> String = super::wireshark::dissector;
+    const TWIN: fn(&Path) -> Result<Self::Start> = super::backup::twin::start;
+    const ALARMS: fn(&mut Link) -> Work<'_, Vec<Alarm>> = |link| overview::alarms(link).boxed_local();
+    const TRAFFIC: fn(&Link) -> Traffic = Link::traffic;
+    const OVERVIEW: fn(&mut Link) -> Work<'_, OverviewReport> = |link| overview::overview(link).boxed_local();
+    const CHECK: for<'a> fn(&'a Robot, Access, &'a Screen) -> Work<'a, Vec<Layer>> =
+        |robot, access, screen| check::check(robot, access, screen).boxed_local();
+    const OPEN_SESSION_LINK: for<'a> fn(&'a Robot, &'a Access, &'a Screen) -> Work<'a, HeldLink> =
+        |robot, access, screen| session_link::open_session_link(robot, access, screen).boxed_local();
 
     fn urls() -> Vec<(String, &'static str)> {
         BUSES.iter().map(|bus| (format!("{}://", bus.name), bus.about)).collect()
-    }
-
-    fn twin(folder: &Path) -> Result<Self::Start, Failure> {
-        super::backup::twin::start(folder)
-    }
-
-    fn dissector() -> String {
-        super::wireshark::dissector()
     }
 
     fn codes() -> Vec<(String, String)> {
@@ -84,38 +75,16 @@ impl Declaration for Yrcx {
     fn stop_command() -> Self::Stop {
         Stop {}
     }
-
-    async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
-        overview::alarms(link).await
-    }
-
-    fn traffic(link: &Link) -> Traffic {
-        link.traffic()
-    }
-
-    async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
-        overview::overview(link).await
-    }
-
-    async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
-        Box::pin(check::check(robot, access, screen)).await
-    }
-
-    async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
-        let (images, recorder) = session_link::open_session_link(robot, access, screen).await?;
-        let finish = recorder.map(|recorder| Box::new(|| Recorder::finish(recorder)) as Box<_>);
-        Ok(HeldLink { held: SharedLink::Images(images), finish })
-    }
 }
 
 impl Backups for Yrcx {
     const IDS: [&'static str; 3] = ["yrcx.backup", "yrcx.restore", "yrcx.diff"];
 
-    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport> {
         back_up(context, making).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport> {
         restore(context, restoring).await
     }
 }

@@ -1,18 +1,15 @@
 //! Conversion of client errors to command failures: what failed on which robot, and what to do. Includes the result
 //! of a stop.
 
-use std::fmt;
-
 use super::position::Unit;
 use super::refusal::relative_motion_warning;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use crate::refusal::refusal_failure;
 use armctl_client::yrcx::{Error, StopResult};
 use armctl_controller::yrcx::describe::command_summary;
 use armctl_controller::yrcx::sequence;
 use armctl_controller::yrcx::session::{NotSentReason, Silence};
 use armctl_controller::yrcx::table::{Command, DurationClass};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::session_client::session_busy;
 
 /// Failure for an error of the client; `label` is the robot.

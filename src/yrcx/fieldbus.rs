@@ -1,21 +1,13 @@
 //! Interface that each fieldbus implements. `buses.rs` lists the fieldbuses.
 
 use std::any::Any;
-use std::fmt;
 use std::net::SocketAddr;
-use std::path::Path;
-use std::time::Duration;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-use serde_json::{Map, Value};
+use serde_json::Map;
 
 use super::decode::images::BusDecoder;
-use crate::prelude::*;
-use armctl_controller::yrcx::alarm::Alarm;
+use crate::prelude::basics::*;
 use armctl_controller::yrcx::simulator::Start;
-use armctl_files as files;
-use armctl_frame::face::layers::Layers;
 use armctl_frame::failure::plain;
 use armctl_frame::settings::target::{Address, Bus, Place, Sim, Target};
 use armctl_transport::image::tap::Tap;
@@ -49,7 +41,7 @@ pub struct Fieldbus {
     /// Returns the decoder for images in captures.
     pub decoder: fn() -> Box<dyn BusDecoder>,
     /// Starts a simulated controller on this fieldbus, with the faults of the simulator's URL.
-    pub simulate: fn(&Sim) -> Result<Simulation, Failure>,
+    pub simulate: fn(&Sim) -> Result<Simulation>,
 }
 
 /// Resolves all addresses of a controller.
@@ -168,7 +160,7 @@ pub trait InLayer<T> {
     fn in_layer(self, layer: &'static str) -> Checked<T>;
 }
 
-impl<T> InLayer<T> for Result<T, Failure> {
+impl<T> InLayer<T> for Result<T> {
     fn in_layer(self, layer: &'static str) -> Checked<T> {
         self.map_err(|failure| (layer, failure))
     }
@@ -193,7 +185,7 @@ pub struct Simulation {
 
 impl Simulation {
     /// Creates a simulation that a client reaches at `url`.
-    pub fn at(url: &str, controller: impl fmt::Debug + 'static) -> Result<Self, Failure> {
+    pub fn at(url: &str, controller: impl fmt::Debug + 'static) -> Result<Self> {
         Ok(Self { bus: bus_of(url)?, controller: Box::new(controller) })
     }
 }
@@ -204,7 +196,7 @@ pub trait Search {
     fn scope(&self) -> Scope;
 
     /// Searches for devices, and collects answers for the time `wait`.
-    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>>;
+    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>>>;
 }
 
 /// Scope of a search.
@@ -236,7 +228,7 @@ pub struct Device {
 }
 
 /// Converts the identity of a device to JSON fields.
-pub fn fields(identity: &impl Serialize) -> Result<Map<String, Value>, Failure> {
+pub fn fields(identity: &impl Serialize) -> Result<Map<String, Value>> {
     match serde_json::to_value(identity) {
         Ok(Value::Object(fields)) => Ok(fields),
         Ok(_) => Err(Failure::local("internal error: an identity has no fields")),
@@ -252,7 +244,7 @@ pub trait Serve {
     }
 
     /// Starts the server in its own threads or tasks.
-    fn serve(&self, work: ServeOptions<'_>) -> Result<RunningSimulation, Failure>;
+    fn serve(&self, work: ServeOptions<'_>) -> Result<RunningSimulation>;
 }
 
 /// A controller to serve.
@@ -294,7 +286,7 @@ impl fmt::Debug for RunningSimulation {
 }
 
 /// Parses the URL of a fieldbus.
-pub fn bus_of(url: &str) -> Result<Bus, Failure> {
+pub fn bus_of(url: &str) -> Result<Bus> {
     match url.parse::<Target>()?.place {
         Place::Bus(bus) => Ok(bus),
         _ => Err(Failure::local(format!("internal error: {url} is not a fieldbus URL"))),

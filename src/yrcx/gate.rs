@@ -1,15 +1,9 @@
 //! Tests that run every subcommand through the confirmation gate: its risk, no terminal for a question. Also compares
 //! each dry run with the frames that were sent.
 
-use std::collections::BTreeSet;
-use std::sync::{Arc, Mutex};
-use std::time::Duration;
-
-use serde_json::Value;
+use std::sync::Mutex;
 
 use super::commands::Commands;
-use super::link::Link;
-use super::link::Yrcx;
 use super::simulated::in_process;
 use super::testing::{planned_line, resolved};
 use crate::prelude::*;
@@ -17,7 +11,6 @@ use armctl_controller::simulator::run_options::RunOptions;
 use armctl_controller::yrcx::image::COMMAND_WORDS;
 use armctl_controller::yrcx::signal::resting;
 use armctl_controller::yrcx::table::Row;
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::gate::{Gate, Grant};
 use armctl_frame::settings::target::Sim;
 use armctl_frame::testing::{self, QUIET};
@@ -382,8 +375,8 @@ struct Bench {
 
 struct RecordingPeer<P>(P, Image, Arc<Mutex<Vec<Frame>>>);
 
-impl<P: std::fmt::Debug> std::fmt::Debug for RecordingPeer<P> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl<P: fmt::Debug> fmt::Debug for RecordingPeer<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.fmt(f)
     }
 }
@@ -432,7 +425,7 @@ impl Bench {
     }
 
     /// Runs a command line as `armctl_frame` does: with `--yes`, or without a terminal for the question.
-    fn run(&mut self, line: &str, yes: bool) -> Result<Value, Failure> {
+    fn run(&mut self, line: &str, yes: bool) -> Result<Value> {
         let (_, command) = real(line);
         let intent = command.intent(Some(&self.robot));
         let gate = Gate { yes, ..Gate::default() };

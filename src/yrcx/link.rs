@@ -4,8 +4,7 @@
 mod board;
 mod observer;
 
-use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::sync::Mutex;
 
 use derive_more::{Deref, DerefMut};
 
@@ -14,14 +13,12 @@ pub use super::command_result::CommandResult;
 use super::connect::{self, Endpoint, OpenBoard};
 use super::failure::{failure, stopped};
 use super::fieldbus::Fieldbus;
-use super::link_error::not_open;
 use super::trace::{Recorder, Trace};
 use super::unit_argument::Unit;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_client::yrcx;
 pub use armctl_client::yrcx::hex;
 use armctl_client::yrcx::{Client, Error, Options, Refusal, Reply, Totals};
-use armctl_controller::yrcx::alarm::Alarm;
 use armctl_controller::yrcx::procedure::Procedure;
 use armctl_controller::yrcx::register::Register;
 use armctl_controller::yrcx::table::Command;
@@ -68,7 +65,7 @@ impl Family for Yrcx {
     type Link = Link;
     const STOP: &'static [&'static str] = &["stop"];
 
-    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link> {
         let endpoint = connect::endpoint(robot)?;
         let options = options(robot, &endpoint, &access);
         if access.dry_run {
@@ -91,7 +88,7 @@ impl Family for Yrcx {
         Link::new(robot, &access, screen, client, recorder)?.ready(screen).await
     }
 
-    async fn halt(link: &mut Link) -> Result<String, Failure> {
+    async fn halt(link: &mut Link) -> Result<String> {
         link.client.stop().await.map(stopped).map_err(|error| link.failure(error))
     }
 
@@ -119,7 +116,7 @@ impl Family for Yrcx {
         }
     }
 
-    fn addresses(robot: &Robot) -> Result<Vec<target::Address>, Failure> {
+    fn addresses(robot: &Robot) -> Result<Vec<target::Address>> {
         match connect::endpoint(robot)? {
             Endpoint::Bus(bus, Fieldbus { addresses: Some(addresses), .. }) => {
                 addresses(bus).map_err(|error| not_open(&robot.label(), bus.scheme, &error))
@@ -128,7 +125,7 @@ impl Family for Yrcx {
         }
     }
 
-    async fn close(link: Link, screen: &Screen) -> Result<(), Failure> {
+    async fn close(link: Link, screen: &Screen) -> Result<()> {
         let Link { mut client, board, trace, recorder, label, link_alarm, is_simulated, .. } = link;
         if client.is_dry_run() {
             return Ok(());
@@ -201,7 +198,7 @@ impl Link {
         access: &Access,
         screen: &Screen,
         peer: Box<dyn image::ImagePeer>,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self> {
         let options = options(robot, &connect::endpoint(robot)?, access);
         let client = Client::over(ImageLink::in_process(peer), options);
         Self::new(robot, access, screen, client, None)?.ready(screen).await
@@ -213,7 +210,7 @@ impl Link {
         screen: &Screen,
         mut client: Client,
         recorder: Option<Recorder>,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self> {
         let is_simulated = robot.target.value.is_simulated();
         let trace = Trace::open(access, screen, !is_simulated && !client.is_shared())?;
         let trace = Arc::new(Mutex::new(trace));
@@ -235,7 +232,7 @@ impl Link {
     }
 
     /// Waits until the controller has sent an image.
-    async fn ready(mut self, screen: &Screen) -> Result<Self, Failure> {
+    async fn ready(mut self, screen: &Screen) -> Result<Self> {
         match self.client.ready().await {
             Ok(()) => Ok(self),
             Err(error) => {
@@ -248,7 +245,7 @@ impl Link {
     }
 
     /// Creates a draft of a remote command for the robot that `--unit` selects.
-    pub fn draft(&self, command: Command) -> Result<Draft, Failure> {
+    pub fn draft(&self, command: Command) -> Result<Draft> {
         let row = command.row();
         match self.unit {
             0 => Ok(command.order()),
@@ -263,7 +260,7 @@ impl Link {
     }
 
     /// Returns a usage error if the user gave `--unit`; `why` is the reason why the command does not use this argument.
-    pub fn reject_unit(&self, why: &str) -> Result<(), Failure> {
+    pub fn reject_unit(&self, why: &str) -> Result<()> {
         if self.unit == 0 {
             return Ok(());
         }
@@ -271,71 +268,71 @@ impl Link {
     }
 
     /// Reserves the robot before a read, if the next command depends on the value read: [`Client::reserve`].
-    pub async fn reserve(&mut self, order: &Order) -> Result<(), Failure> {
+    pub async fn reserve(&mut self, order: &Order) -> Result<()> {
         self.client.reserve(order).await.map_err(|error| self.failure(error))
     }
 
     /// Executes a remote command; a refusal is a failure.
-    pub async fn ask(&mut self, order: &Order) -> Result<CommandResult, Failure> {
+    pub async fn ask(&mut self, order: &Order) -> Result<CommandResult> {
         self.client.ask(order).await.map(CommandResult::from).map_err(|error| self.failure(error))
     }
 
     /// Executes a remote command; a refusal is a result.
-    pub async fn try_ask(&mut self, order: &Order) -> Result<Result<yrcx::CompletedCommand, Refusal>, Failure> {
+    pub async fn try_ask(&mut self, order: &Order) -> Result<Result<yrcx::CompletedCommand, Refusal>> {
         self.client.try_ask(order).await.map_err(|error| self.failure(error))
     }
 
     /// Executes a remote command and returns the whole reply, including an error reply.
-    pub async fn raw(&mut self, order: &Order) -> Result<Reply, Failure> {
+    pub async fn raw(&mut self, order: &Order) -> Result<Reply> {
         self.client.raw(order).await.map_err(|error| self.failure(error))
     }
 
     /// Executes a remote command until it has ended or runs independently: [`Client::begin`].
-    pub async fn begin(&mut self, order: &Order) -> Result<Option<CommandResult>, Failure> {
+    pub async fn begin(&mut self, order: &Order) -> Result<Option<CommandResult>> {
         let begun = self.client.begin(order).await.map_err(|error| self.failure(error))?;
         Ok(begun.map(CommandResult::from))
     }
 
     /// Jogs: [`Client::jog`].
-    pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<CommandResult, Failure> {
+    pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<CommandResult> {
         self.client.jog(order, time).await.map(CommandResult::from).map_err(|error| self.failure(error))
     }
 
     /// Next value of continuous output: [`Client::next_output`].
-    pub async fn next_output(&mut self, order: &Order) -> Result<CommandResult, Failure> {
+    pub async fn next_output(&mut self, order: &Order) -> Result<CommandResult> {
         self.client.next_output(order).await.map(CommandResult::from).map_err(|error| self.failure(error))
     }
 
     /// Executes a procedure on the dedicated signals, and returns its duration.
-    pub async fn execute(&mut self, procedure: Procedure) -> Result<Duration, Failure> {
+    pub async fn execute(&mut self, procedure: Procedure) -> Result<Duration> {
         self.reject_unit("signals belong to the whole controller")?;
         self.client.run_procedure(procedure).await.map_err(|error| self.failure(error))
     }
 
     /// Sets general-purpose words: [`Client::set_words`].
-    pub async fn set_words(&mut self, changes: &[(Register, u32)]) -> Result<(), Failure> {
+    pub async fn set_words(&mut self, changes: &[(Register, u32)]) -> Result<()> {
         self.reject_unit("words belong to the whole controller")?;
         self.client.set_words(changes).await.map_err(|error| self.failure(error))
     }
 
     /// Current image of the controller, for a command about its signals.
-    pub async fn read_signals(&mut self) -> Result<Image, Failure> {
+    pub async fn read_signals(&mut self) -> Result<Image> {
         self.reject_unit("signals belong to the whole controller")?;
         self.look().await
     }
 
     /// Current image of the controller.
-    pub async fn look(&mut self) -> Result<Image, Failure> {
+    pub async fn look(&mut self) -> Result<Image> {
         self.client.input_image().await.map_err(|error| self.failure(error))
     }
 
     /// Waits for an image that matches, and returns it. A loss of the link is reported once.
-    pub async fn wait_for_image(&mut self, matters: impl FnMut(&Image) -> bool) -> Result<Image, Failure> {
+    pub async fn wait_for_image(&mut self, matters: impl FnMut(&Image) -> bool) -> Result<Image> {
         self.client.wait_for_input(matters).await.map_err(|error| self.failure(error))
     }
 
     /// Checks the permission for this risk, as the last check before a frame is sent.
-    pub fn authorize(&self, name: &str, risk: Risk) -> Result<(), Failure> {
+    pub fn authorize(&self, name: &str, risk: Risk) -> Result<()> {
         self.client.authorize(name, risk).map_err(|error| self.failure(error))
     }
 

@@ -1,6 +1,6 @@
 //! Texts for failures to open a fieldbus link, for all fieldbuses.
 
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::settings::target::bus::Scheme;
 use armctl_transport::image::LinkError;
 

@@ -4,11 +4,9 @@
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
-use super::link::{Link, Yrcx};
 use super::number_arguments::{Numbers, named, runs};
 use super::read_requests::{ask_each, is_undefined};
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::names::Kind as Label;
 use armctl_controller::yrcx::table::Command;
 use armctl_controller::yrcx::value::Value;
@@ -106,12 +104,12 @@ impl Row {
 
 impl<K: Kind> Numbered<K> {
     /// Request that reads a row.
-    pub fn read_order(number: i32) -> Result<Order, Failure> {
+    pub fn read_order(number: i32) -> Result<Order> {
         K::READ.0.order().with(K::READ.1, number).valid_order()
     }
 
     /// Request that stores a row with these texts.
-    fn write_order(number: i32, texts: &[String]) -> Result<Order, Failure> {
+    fn write_order(number: i32, texts: &[String]) -> Result<Order> {
         let fields = K::FIELDS.iter().zip(texts);
         // In the request that writes a hand, the robot is the field `Robot`. In the answer to a read, the robot is the
         // field `Owner`. An empty text means that the hand system is not sent.
@@ -170,7 +168,7 @@ impl<K: Kind> Store for Numbered<K> {
         runs(numbers)
     }
 
-    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self> {
         Ok(Self::default())
     }
 
@@ -208,9 +206,9 @@ impl<K: Kind> Store for Numbered<K> {
         is_undefined(failure)
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Row>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Row>> {
         let order = |number: &i32| link.draft(K::READ.0)?.with(K::READ.1, *number).valid_order();
-        let orders = numbers.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
+        let orders = numbers.iter().map(order).collect::<Result<Vec<Order>>>()?;
         let answers = ask_each(link, screen, &format!("reading {}", K::WORDS.nouns[1]), &orders).await?;
         let rows = answers.outcomes.into_iter().map(|outcome| outcome.map(|values| Some(Row::new::<K>(values))));
         Ok(Answers { rows: rows.collect(), asked: answers.asked })
@@ -238,7 +236,7 @@ impl<K: Kind> Writable for Numbered<K> {
         Ok(draft)
     }
 
-    fn complete_draft(&self, number: i32, draft: &Draft, old: Option<&Row>) -> Result<Row, Failure> {
+    fn complete_draft(&self, number: i32, draft: &Draft, old: Option<&Row>) -> Result<Row> {
         // If the unit changes, the old values of the axes are not kept.
         let unit = K::FIELDS.iter().position(|(_, key, _)| *key == Key::Unit);
         let has_unit = |old: &&Row| unit.is_none_or(|at| draft[at].as_ref().is_none_or(|unit| *unit == old.texts[at]));
@@ -255,12 +253,12 @@ impl<K: Kind> Writable for Numbered<K> {
                 Err(Failure::usage(message).hint("type all values; nothing was written"))
             }
         };
-        let texts = draft.iter().enumerate().map(kept).collect::<Result<Vec<String>, Failure>>()?;
+        let texts = draft.iter().enumerate().map(kept).collect::<Result<Vec<String>>>()?;
         let order = Self::write_order(number, &texts)?;
         Ok(Row { order: Some(order.clone()), ..Row::new::<K>(Self::stored(order.values())) })
     }
 
-    async fn plan(&self, link: &mut Link, rows: &[store::Row<Self>]) -> Result<(), Failure> {
+    async fn plan(&self, link: &mut Link, rows: &[store::Row<Self>]) -> Result<()> {
         for (number, draft) in rows {
             let about = Self::asked(*number);
             let reason = Reason::about(&about).depending_on("the current data: written if different");
@@ -285,7 +283,7 @@ impl<K: Kind> Writable for Numbered<K> {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<()> {
         for order in rows.iter().filter_map(|(_, _, new)| new.order.as_ref()) {
             link.ask(order).await?;
         }

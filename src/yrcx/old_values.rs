@@ -4,18 +4,16 @@
 use serde_json::Value as Json;
 
 use super::confirmed_write::read_current;
-use super::link::Link;
 use super::robot_settings::{SETTINGS, Setting};
 use super::single_command::format_field;
 use super::var::held;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::table::Command;
 use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
 
 /// Reads the values that a command replaces. If the controller refuses the read, the old values stay unknown. A dry run
 /// only notes the request.
-pub async fn read_old_values(link: &mut Link, order: &Order) -> Result<Old, Failure> {
+pub async fn read_old_values(link: &mut Link, order: &Order) -> Result<Old> {
     let Some(read) = read_command(order) else { return Ok(Old::UNREAD) };
     let values = read_current(link, &read.valid_order()?, OLD_VALUE).await.map_err(nothing_written)?;
     Ok(Old::read(values.and_then(|values| extract_old_value(order, &values))))

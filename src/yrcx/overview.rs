@@ -1,10 +1,8 @@
 //! Summary of a robot for `armctl status`.
 
 use super::info::entry;
-use super::link::Link;
 use super::status::position_mm;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::answer::Status;
 use armctl_controller::yrcx::signal::input;
 use armctl_controller::yrcx::table::Command;
@@ -24,7 +22,7 @@ const NO_COMMANDS: &str =
 const BUSY: &str = "servos and position were not read: another client's remote command is running";
 
 /// Reads the signals. Also reads the position, if that does not take control of the controller.
-pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
+pub async fn overview(link: &mut Link) -> Result<OverviewReport> {
     let image = link.look().await?;
     let not_asked = not_asked(link, &image);
     let position = if not_asked.is_none() { position_mm(link).await? } else { None };
@@ -35,7 +33,7 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
 }
 
 /// Present alarm. Its number is not read if that would take control of the controller.
-pub(super) async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
+pub(super) async fn alarms(link: &mut Link) -> Result<Vec<Alarm>> {
     let image = link.look().await?;
     let (alarm, warning) = (output::ALARM.is_on(&image), output::WARNING.is_on(&image));
     let kind = match (alarm, warning) {
@@ -56,14 +54,14 @@ pub(super) async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
 }
 
 /// Reads which alarm is present, because the signal does not identify the alarm.
-async fn latest_alarm(link: &mut Link) -> Result<Option<Alarm>, Failure> {
+async fn latest_alarm(link: &mut Link) -> Result<Option<Alarm>> {
     let order = latest()?;
     Ok(link.try_ask(&order).await?.ok().and_then(|done| alarm(&done.values)))
 }
 
 /// Request for the latest alarm of the controller, whatever robot `--unit` selects. The manual does not say that entry 1
 /// of the history is the latest.
-pub(super) fn latest() -> Result<Order, Failure> {
+pub(super) fn latest() -> Result<Order> {
     Command::AlarmHistory.order().with(Key::History, 1).valid_order()
 }
 

@@ -3,14 +3,9 @@
 
 use std::sync::LazyLock;
 
-use super::complete;
-use super::link::{Link, Yrcx};
 use super::number_arguments::single;
 use super::read_requests::{ask_each, is_undefined};
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
-use armctl_controller::similar_word::nearest;
-use armctl_controller::user_input;
 use armctl_controller::yrcx::table::parameter::{PARAMETERS, Parameter};
 use armctl_frame::store::Row;
 
@@ -63,12 +58,12 @@ impl Parameters {
     }
 
     /// The request that reads a parameter.
-    pub fn read_order(&self, key: Setting) -> Result<Order, Failure> {
+    pub fn read_order(&self, key: Setting) -> Result<Order> {
         self.draft_for(table::Command::ParamGet, key).valid_order()
     }
 
     /// The request that writes a parameter.
-    pub fn write_order(&self, key: Setting, value: &str) -> Result<Order, Failure> {
+    pub fn write_order(&self, key: Setting, value: &str) -> Result<Order> {
         self.draft_for(table::Command::ParamSet, key).with(Key::Value, value).valid_order()
     }
 }
@@ -122,7 +117,7 @@ impl Store for Parameters {
         axis.map_or_else(|| parameter.name.to_owned(), |axis| format!("{}.{axis}", parameter.name))
     }
 
-    async fn open(link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+    async fn open(link: &mut Link, _options: &Single) -> Result<Self> {
         Ok(Self { robot: link.unit() })
     }
 
@@ -164,8 +159,8 @@ impl Store for Parameters {
         is_undefined(failure)
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Setting]) -> Result<Answers<Amount>, Failure> {
-        let orders = keys.iter().map(|key| self.read_order(*key)).collect::<Result<Vec<Order>, Failure>>()?;
+    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Setting]) -> Result<Answers<Amount>> {
+        let orders = keys.iter().map(|key| self.read_order(*key)).collect::<Result<Vec<Order>>>()?;
         let answers = ask_each(link, screen, "reading parameters", &orders).await?;
         let amount = |key: &Setting, values: Values| Amount::new(*key, values.int(Key::Value).unwrap_or_default());
         let rows = keys.iter().zip(answers.outcomes);
@@ -186,14 +181,14 @@ impl Writable for Parameters {
         Ok(value.flatten())
     }
 
-    fn complete_draft(&self, key: Setting, draft: &Option<i32>, old: Option<&Amount>) -> Result<Amount, Failure> {
+    fn complete_draft(&self, key: Setting, draft: &Option<i32>, old: Option<&Amount>) -> Result<Amount> {
         draft
             .map(|value| Amount::new(key, value))
             .or(old.copied())
             .ok_or_else(|| Failure::usage(format!("{} has no value to keep", Self::name(key))).hint("give a value"))
     }
 
-    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<()> {
         for (key, draft) in rows {
             let least = key.0.span.0;
             let [one, other] = draft.map_or([least, least + 1], |value| [value; 2]);
@@ -205,7 +200,7 @@ impl Writable for Parameters {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<()> {
         for (key, _, new) in rows {
             link.ask(&self.write_order(*key, &new.value.to_string())?).await?;
         }

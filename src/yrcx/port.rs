@@ -1,14 +1,11 @@
 //! `yrcx port` (4.5.1): ports of eight signals, read and written with remote commands.
 
-use super::link::Yrcx;
 use super::number_arguments::{Series, named, single};
 use super::read_requests::ask_each;
 use super::single_command::one_row;
-use crate::complete;
 use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
 use armctl_controller::yrcx::names::signal_of_port;
-use armctl_frame::names;
 use armctl_frame::robot::item::{Columns, Item, Items, Written, WrittenItems};
 
 commands! {
@@ -128,12 +125,12 @@ impl Command for Get {
     type Report = Items<Level, Bits>;
     const ID: &'static str = "yrcx.port.get";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Items<Level, Bits>, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Items<Level, Bits>> {
         let Context { link, robot, screen, .. } = context;
         let called = names::of_robot(robot, screen);
         let places: Vec<PortSignal> = Series::all(&self.places).copied().collect();
         let order = |place: &PortSignal| place.order(link.draft(table::Command::PortGet)?).map_err(Failure::usage);
-        let orders = places.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
+        let orders = places.iter().map(order).collect::<Result<Vec<Order>>>()?;
         let answers = ask_each(link, screen, "reading ports", &orders).await?;
         let items = places.iter().zip(answers.outcomes).map(|(place, outcome)| {
             let state = outcome.map(|values| Some(values.int(Key::Value).unwrap_or_default()));
@@ -162,7 +159,7 @@ pub struct Bits {
 }
 
 impl PortSignal {
-    fn item(self, names: &Names, state: Result<Option<i32>, Failure>) -> Item<Level, Bits> {
+    fn item(self, names: &Names, state: Result<Option<i32>>) -> Item<Level, Bits> {
         let name = self.describe();
         let port = state.as_ref().ok().copied().flatten().filter(|_| self.bit.is_none());
         let level = |value: i32| match self.bit {

@@ -1,6 +1,5 @@
 //! Procedures of the timing charts as commands (chapter 1, section 3).
 
-use super::link::{Link, Yrcx};
 use crate::prelude::*;
 use armctl_controller::yrcx::procedure::Procedure;
 use armctl_frame::face::shared_commands::CommonReport;
@@ -34,7 +33,7 @@ macro_rules! procedures {
                     if Procedure::$procedure().only_awaits() { ConnectMode::Monitor } else { ConnectMode::Control }
                 }
 
-                async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProcedureReport, Failure> {
+                async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProcedureReport> {
                     let old = read_old_state(context.link, [$(output::$signal)?].into_iter().next()).await?;
                     let elapsed = context.link.execute(Procedure::$procedure()).await?;
                     let elapsed_ms = u64::try_from(elapsed.as_millis()).unwrap_or(u64::MAX);
@@ -46,7 +45,7 @@ macro_rules! procedures {
 }
 
 /// Reads the state of the signal before the procedure. A stop has no such signal, so it does not wait for a read.
-async fn read_old_state(link: &mut Link, signal: Option<Signal>) -> Result<Old, Failure> {
+async fn read_old_state(link: &mut Link, signal: Option<Signal>) -> Result<Old> {
     let Some(signal) = signal else { return Ok(Old::UNREAD) };
     let shown = link.look().await.known()?;
     Ok(Old::read(shown.map(|image| signal.is_on(&image))))

@@ -4,7 +4,6 @@ mod run;
 
 use super::link;
 use super::single_command::{SingleCommand, one_row, single_command};
-use crate::complete;
 use crate::prelude::*;
 use armctl_controller::yrcx::table::{COMMON_LINES, Command};
 use armctl_frame::robot::program as robot;
@@ -86,7 +85,7 @@ fn describe(program: Option<&String>, name: Option<&String>, task: Option<&Strin
 
 /// Adds the selected program to a report.
 fn named(new: NewValue, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> NewValue {
-    let numeric = |text: Option<&String>| text.map_or(serde_json::Value::Null, |text| number(text));
+    let numeric = |text: Option<&String>| text.map_or(Value::Null, |text| number(text));
     new.with("program", numeric(program)).with("name", name.cloned()).with("task", numeric(task))
 }
 
@@ -198,7 +197,7 @@ macro_rules! starts {
                     format!($intent, self.which.describe())
                 }
 
-                fn report(&self, _done: &link::CommandResult) -> Result<SetReport, Failure> {
+                fn report(&self, _done: &link::CommandResult) -> Result<SetReport> {
                     let new = NewValue::of("program_state", $new, format!($done, self.which.describe()));
                     Ok(self.which.named(new).replaces(Old::UNREAD))
                 }

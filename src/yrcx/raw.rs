@@ -3,10 +3,8 @@
 use super::field_row::FieldRow;
 use super::refusal::refused;
 use super::{confirmed_write, link};
-use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_client::yrcx::Reply;
-use armctl_controller::user_input;
 use armctl_controller::yrcx::answer::Answer;
 use armctl_controller::yrcx::describe;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Words};
@@ -60,7 +58,7 @@ impl Command for Raw {
         confirmed_write::confirmation(self.wi.command())
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Exchange, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Exchange> {
         context.link.reject_unit("the words contain the robot number")?;
         if self.confirmation() == Confirmation::WhenKnown {
             confirmed_write::confirm(context.link, &context.confirmer, &self.wi).await?;

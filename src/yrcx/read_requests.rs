@@ -1,18 +1,16 @@
 //! Several read requests, sent one after the other, because a controller executes one remote command at a time. Each
 //! request has its own result.
 
-use super::link::Link;
 use super::refusal::{object, refused};
 use crate::prelude::*;
-use armctl_controller::yrcx::alarm::{Alarm, STOP_INPUT};
+use armctl_controller::yrcx::alarm::STOP_INPUT;
 use armctl_controller::yrcx::value::Value;
-use armctl_frame::dry_run::unknown;
 
 /// Results of several requests, in the order of the requests.
 #[derive(Debug)]
 pub struct RequestResults {
     /// Values or failure of each request.
-    pub outcomes: Vec<Result<Values, Failure>>,
+    pub outcomes: Vec<Result<Values>>,
     /// Number of requests that were sent. The other requests were not sent, because they would fail for the same
     /// reason.
     pub asked: usize,
@@ -21,12 +19,7 @@ pub struct RequestResults {
 /// Sends all requests. A refusal is the result of its own request only. A link failure, or a refusal that the next
 /// request would get too, ends the loop. If this happens at the first request, the function returns the failure. In a
 /// dry run, notes all requests and ends.
-pub async fn ask_each(
-    link: &mut Link,
-    screen: &Screen,
-    what: &str,
-    orders: &[Order],
-) -> Result<RequestResults, Failure> {
+pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Order]) -> Result<RequestResults> {
     plan_each(link, orders)?;
     let mut progress = (orders.len() > 1).then(|| screen.items_progress(what, orders.len() as u64));
     let mut outcomes = Vec::with_capacity(orders.len());
@@ -50,7 +43,7 @@ pub async fn ask_each(
 }
 
 /// Notes read requests in a dry run, each with its object. The dry run ends there.
-pub fn plan_each(link: &mut Link, orders: &[Order]) -> Result<(), Failure> {
+pub fn plan_each(link: &mut Link, orders: &[Order]) -> Result<()> {
     if !link.is_dry_run() || orders.is_empty() {
         return Ok(());
     }
@@ -62,7 +55,7 @@ pub fn plan_each(link: &mut Link, orders: &[Order]) -> Result<(), Failure> {
 }
 
 /// Sends one of several requests. The flag is `true` if the next request can succeed.
-async fn ask(link: &mut Link, order: &Order) -> (Result<Values, Failure>, bool) {
+async fn ask(link: &mut Link, order: &Order) -> (Result<Values>, bool) {
     match link.try_ask(order).await {
         Ok(Err(refusal)) => (Err(refused(order.row(), refusal.alarm)), !refuses_all_commands(refusal.alarm)),
         Ok(Ok(done)) => (check_echo(order, &done.values).map(|()| done.values), true),
@@ -82,7 +75,7 @@ pub fn is_undefined(failure: &Failure) -> bool {
 }
 
 /// Checks that the fields that an answer repeats are equal to the fields of the request.
-pub fn check_echo(order: &Order, values: &Values) -> Result<(), Failure> {
+pub fn check_echo(order: &Order, values: &Values) -> Result<()> {
     let differs = |(key, asked): &(Key, &Value)| values.value(*key).is_some_and(|told| told != *asked);
     match order.values().iter().find(differs) {
         Some((key, _)) => {

@@ -1,8 +1,8 @@
 //! Conversion of commands that armctl rejected or the controller refused to failures.
 
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_client::yrcx::Refusal;
-use armctl_controller::yrcx::alarm::{Alarm, STOP_INPUT};
+use armctl_controller::yrcx::alarm::STOP_INPUT;
 use armctl_controller::yrcx::codec::WordError;
 use armctl_controller::yrcx::table::{DurationClass, Row};
 use armctl_controller::yrcx::value::Value;
@@ -10,11 +10,11 @@ use armctl_controller::yrcx::value::Value;
 /// Builds the order of a command line.
 pub trait BuildOrder {
     /// Returns the order. A field that the manual does not allow is an error of the command line.
-    fn valid_order(self) -> Result<Order, Failure>;
+    fn valid_order(self) -> Result<Order>;
 }
 
 impl BuildOrder for Draft {
-    fn valid_order(self) -> Result<Order, Failure> {
+    fn valid_order(self) -> Result<Order> {
         self.build().map_err(|error| invalid_words(&error))
     }
 }

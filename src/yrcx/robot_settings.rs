@@ -1,10 +1,8 @@
 //! Settings of a robot that can be read and written, as a table.
 
-use super::link::{Link, Yrcx};
 use super::read_requests::{ask_each, is_undefined};
 use super::single_command::format_field;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::table::Command;
 use armctl_controller::yrcx::value::Value;
 use armctl_frame::robot::item::Plain;
@@ -56,7 +54,7 @@ pub struct Settings {
 
 impl Settings {
     /// The requests that read these settings, without repetitions.
-    pub fn read_orders(&self, keys: &[&'static Setting]) -> Result<Vec<Order>, Failure> {
+    pub fn read_orders(&self, keys: &[&'static Setting]) -> Result<Vec<Order>> {
         let mut commands: Vec<Command> = keys.iter().map(|key| key.read.0).collect();
         commands.dedup();
         commands
@@ -65,7 +63,7 @@ impl Settings {
             .collect()
     }
 
-    fn write_order(&self, Setting { write: (command, key), .. }: &Setting, text: &str) -> Result<Order, Failure> {
+    fn write_order(&self, Setting { write: (command, key), .. }: &Setting, text: &str) -> Result<Order> {
         command.order().with(Key::Robot, i32::from(self.robot)).with(*key, text).valid_order()
     }
 }
@@ -100,7 +98,7 @@ impl Store for Settings {
         setting.name.to_owned()
     }
 
-    async fn open(link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+    async fn open(link: &mut Link, _options: &Single) -> Result<Self> {
         Ok(Self { robot: link.unit() })
     }
 
@@ -124,12 +122,7 @@ impl Store for Settings {
         is_undefined(failure)
     }
 
-    async fn read(
-        &self,
-        link: &mut Link,
-        screen: &Screen,
-        keys: &[&'static Setting],
-    ) -> Result<Answers<String>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[&'static Setting]) -> Result<Answers<String>> {
         let orders = self.read_orders(keys)?;
         let answers = ask_each(link, screen, "reading settings", &orders).await?.outcomes;
         let row = |Setting { read: (command, key), .. }: &Setting| {
@@ -159,12 +152,12 @@ impl Writable for Settings {
         setting: &'static Setting,
         draft: &Option<String>,
         old: Option<&String>,
-    ) -> Result<String, Failure> {
+    ) -> Result<String> {
         let value = draft.as_ref().or(old).cloned();
         value.ok_or_else(|| Failure::usage(format!("{} has no value to keep", setting.name)).hint("give a value"))
     }
 
-    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<()> {
         for (setting, draft) in rows {
             let order = self.write_order(setting, draft.as_deref().unwrap_or_default())?;
             let about = Self::asked(setting);
@@ -174,7 +167,7 @@ impl Writable for Settings {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<()> {
         for (setting, _, value) in rows {
             link.ask(&self.write_order(setting, value)?).await?;
         }

@@ -1,7 +1,6 @@
 //! `armctl sim yrcx`: simulated controller as a fieldbus server.
 
 use std::io;
-use std::path::PathBuf;
 
 use super::backup::twin;
 use super::buses::Servers;
@@ -14,7 +13,6 @@ use armctl_controller::simulator::run_options::{RunOptions, Speed};
 use armctl_frame::backup::recording::ReplayArguments;
 use armctl_frame::backup::twin::note;
 use armctl_frame::serve::{self, Serving, Started};
-use armctl_frame::settings::target::Family;
 use armctl_frame::settings::target::bus::simulators;
 
 /// Simulate a YRCX on a fieldbus
@@ -53,7 +51,7 @@ pub struct ServeArgs {
 
 impl ServeArgs {
     /// Rejects options of another fieldbus.
-    fn fits(&self, chosen: &Fieldbus) -> Result<(), Failure> {
+    fn fits(&self, chosen: &Fieldbus) -> Result<()> {
         for (fieldbus, arguments) in Servers::arguments() {
             let strange = arguments.iter().find(|argument| self.servers.has(argument.get_id()));
             if let Some(strange) = strange.filter(|_| fieldbus.name != chosen.name) {
@@ -79,7 +77,7 @@ impl serve::Serve for ServeArgs {
     type Report = Serving;
     type Server = RunningSimulation;
 
-    async fn start(self) -> Result<Started<Self>, Failure> {
+    async fn start(self) -> Result<Started<Self>> {
         let wanted = self.bus.as_deref();
         let bus = simulators().find(|(name, _)| wanted.is_none_or(|wanted| wanted == *name)).map(|(_, bus)| bus);
         let all = self.servers.arguments.each();
@@ -109,8 +107,8 @@ impl serve::Serve for ServeArgs {
 }
 
 impl serve::Server for RunningSimulation {
-    async fn run_until_change(&mut self) -> io::Result<()> {
-        std::future::pending().await
+    fn run_until_change(&mut self) -> LocalBoxFuture<'_, io::Result<()>> {
+        std::future::pending().boxed_local()
     }
 
     fn console(&mut self, line: &str) -> Result<String, String> {

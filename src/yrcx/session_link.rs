@@ -7,16 +7,14 @@ use super::failure::failure;
 use super::trace::Recorder;
 use crate::prelude::*;
 use armctl_client::yrcx;
-use armctl_transport::session::host::shared_link::Images;
+use armctl_frame::face::HeldLink;
+use armctl_transport::session::host::shared_link::SharedLink;
 
 /// Opens the connection that the session keeps open.
-pub async fn open_session_link(
-    robot: &Robot,
-    access: &Access,
-    screen: &Screen,
-) -> Result<(Images, Option<Recorder>), Failure> {
+pub async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink> {
     let endpoint = endpoint(robot)?;
     let (link, recorder) = endpoint.open(robot, access, screen).await?;
     let held = yrcx::open_session_link(link, endpoint.is_owner(), Instant::now() + robot.timeout.value).await;
-    Ok((held.map_err(|error| failure(&robot.label(), error))?, recorder))
+    let held = SharedLink::Images(held.map_err(|error| failure(&robot.label(), error))?);
+    Ok(HeldLink { held, finish: recorder.map(|recorder| Box::new(|| Recorder::finish(recorder)) as Box<_>) })
 }

@@ -1,21 +1,16 @@
 //! Simulated controller for a simulator URL.
 
-use std::path::Path;
-
-use anyhow::Context as _;
-
+use crate::prelude::basics::*;
 pub use armctl_client::yrcx::Simulated;
 use armctl_controller::simulator::run_options::RunOptions;
 use armctl_controller::yrcx::simulator::Start;
-use armctl_files as files;
 use armctl_frame::backup::recording::with_replay;
 use armctl_frame::backup::twin;
-use armctl_frame::failure::Failure;
-use armctl_frame::settings::target::{Family, Sim};
+use armctl_frame::settings::target::Sim;
 use armctl_transport::fault::{FaultNames, FaultText, SimulatorFaults};
 
 /// Creates a simulator in this process, with the start state that the URL names.
-pub fn in_process(sim: &Sim, options: RunOptions) -> Result<Simulated, Failure> {
+pub fn in_process(sim: &Sim, options: RunOptions) -> Result<Simulated> {
     Ok(Simulated::new(start(sim)?.with_options(options)))
 }
 
@@ -25,12 +20,12 @@ pub fn has_faults(sim: &Sim) -> bool {
 }
 
 /// Start state that a URL names.
-pub fn start(sim: &Sim) -> Result<Start, Failure> {
+pub fn start(sim: &Sim) -> Result<Start> {
     with_replay(start_with(sim.state.as_deref(), sim.from.as_deref())?, sim.replay.as_deref(), Family::Yrcx)
 }
 
 /// Reads the start state from a state file or a backup, or returns the built-in state.
-pub fn start_with(state: Option<&Path>, from: Option<&Path>) -> Result<Start, Failure> {
+pub fn start_with(state: Option<&Path>, from: Option<&Path>) -> Result<Start> {
     if let Some(folder) = from {
         return twin::start(Family::Yrcx, folder);
     }
@@ -43,10 +38,7 @@ pub fn start_with(state: Option<&Path>, from: Option<&Path>) -> Result<Start, Fa
 }
 
 /// Parses the faults of a URL.
-pub fn faults_of_url<S: FaultText, D: Copy>(
-    sim: &Sim,
-    names: &FaultNames<D>,
-) -> Result<SimulatorFaults<S, D>, Failure> {
+pub fn faults_of_url<S: FaultText, D: Copy>(sim: &Sim, names: &FaultNames<D>) -> Result<SimulatorFaults<S, D>> {
     faults(sim.fault.as_deref(), names).map_err(|why| {
         Failure::usage(format!("fault: {why}"))
             .hint("write % as %25 in a URL; see `armctl help simulator` for a list of faults")
@@ -57,7 +49,7 @@ pub fn faults_of_url<S: FaultText, D: Copy>(
 pub fn faults_of_option<S: FaultText, D: Copy>(
     text: Option<&str>,
     names: &FaultNames<D>,
-) -> Result<SimulatorFaults<S, D>, Failure> {
+) -> Result<SimulatorFaults<S, D>> {
     faults(text, names).map_err(|why| {
         Failure::usage(format!("--fault: {why}")).hint("see `armctl help simulator` for a list of faults")
     })

@@ -2,8 +2,6 @@
 
 use super::confirmed_write::{self, StoredReport};
 use super::link::CommandResult;
-use super::link::Yrcx;
-use super::refusal::BuildOrder as _;
 use crate::prelude::*;
 
 /// A command line that sends one row of the command table.
@@ -27,7 +25,7 @@ pub trait SingleCommand {
     }
 
     /// Report of the result. A dry run has no values.
-    fn report(&self, done: &CommandResult) -> Result<Self::Report, Failure>;
+    fn report(&self, done: &CommandResult) -> Result<Self::Report>;
 }
 
 /// Implements [`Command`] for commands with one remote command. A blanket implementation is not possible: the trait is
@@ -65,7 +63,7 @@ macro_rules! single_command {
 pub(super) use single_command;
 
 /// Sends the command and reports the result.
-pub async fn run<S: SingleCommand>(this: &S, context: Context<'_, Yrcx>) -> Result<S::Report, Failure> {
+pub async fn run<S: SingleCommand>(this: &S, context: Context<'_, Yrcx>) -> Result<S::Report> {
     let draft = context.link.draft(this.command())?;
     let order = this.fill(draft).valid_order()?;
     this.report(&confirmed_write::execute_confirmed(context.link, &context.confirmer, &order, this.intent()).await?)

@@ -1,16 +1,12 @@
 //! `yrcx status`: the dedicated outputs, servos and position.
 
 use super::info::{AxisServo, servos};
-use super::link::Link;
-use super::link::Yrcx;
 use super::overview::{alarm, latest, not_asked, state};
 use super::position::{Unit, mm, position};
 use super::read_requests::{ask_each, plan_each};
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::answer::Status as CommandStatus;
 use armctl_frame::items::{ItemError, verdict};
-use armctl_frame::output::csv::RowsOf;
 use armctl_frame::robot::position::{Joint, joint_table};
 use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
 
@@ -37,7 +33,7 @@ impl Command for Status {
         if self.full { ConnectMode::Control } else { ConnectMode::Monitor }
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<StatusReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<StatusReport> {
         let Context { link, screen, .. } = context;
         let servo = link.draft(table::Command::ServoStatus)?.valid_order()?;
         let place = link.draft(table::Command::PositionMm)?.valid_order()?;
@@ -189,7 +185,7 @@ impl Report for StatusReport {
 
 /// Reads the current position. A robot whose origin is unknown refuses to report its position. In this case, returns
 /// `None`.
-pub(super) async fn position_mm(link: &mut Link) -> Result<Option<[f64; 4]>, Failure> {
+pub(super) async fn position_mm(link: &mut Link) -> Result<Option<[f64; 4]>> {
     let order = link.draft(table::Command::PositionMm)?.valid_order()?;
     let done = link.try_ask(&order).await?.ok();
     Ok(done.and_then(|done| mm(&done.values)))

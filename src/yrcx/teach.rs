@@ -1,11 +1,8 @@
 //! `yrcx teach` (4.2.9): stores the current position as a point. `point set 19 here` is an alias.
 
 use super::confirmed_write::{self, confirmation, read_current};
-use super::link::{Link, Yrcx};
 use super::position::{Unit, group, position, unit_of};
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::teach::{TeachReport, mismatch, unverified};
 
 /// Stores the current position as a point, replaces the old point, and reads the point back.
@@ -46,7 +43,7 @@ impl Command for Teach {
         confirmation(table::Command::Teach)
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Self::Report, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Self::Report> {
         let Context { link, confirmer, .. } = context;
         let read = table::Command::PointGet.order().with(Key::Point, self.number()).valid_order()?;
         let old = read_current(link, &read, "current point").await?;
@@ -84,7 +81,7 @@ impl Teach {
         self.point.as_deref().or(self.flag.as_deref()).unwrap_or_default()
     }
 
-    fn order(&self, link: &Link, unit: Unit) -> Result<Order, Failure> {
+    fn order(&self, link: &Link, unit: Unit) -> Result<Order> {
         let draft = link.draft(table::Command::Teach)?.with(Key::Point, self.number());
         draft.with(Key::Unit, i32::from(unit == Unit::Mm)).valid_order()
     }

@@ -3,17 +3,12 @@
 
 use std::collections::VecDeque;
 use std::fmt::Debug;
-use std::time::Duration;
 
-use serde_json::Value;
-
-use super::link::{Link, Yrcx};
 use super::unit_argument::Unit;
 use crate::prelude::*;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Words};
 use armctl_controller::yrcx::table::Row;
 use armctl_frame::face::Face;
-use armctl_frame::face::registration::Registered;
 use armctl_frame::gate::Grant;
 use armctl_frame::output::{ColorChoice, Format};
 use armctl_frame::testing;
@@ -117,30 +112,30 @@ pub(super) fn workspace(words: &[&str]) -> Value {
 }
 
 /// Returns WI0 to WI15 of each command that `armctl yrcx WORDS…` would send.
-pub(super) fn words(words: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
+pub(super) fn words(words: &[&str]) -> Result<Vec<Vec<String>>> {
     Ok(frames(words)?.iter().map(|frame| &frame["wi"]).filter(|words| words.is_array()).map(texts).collect())
 }
 
 /// Returns WI0 to WI15 of each command that would change something.
-pub(super) fn written(line: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
+pub(super) fn written(line: &[&str]) -> Result<Vec<Vec<String>>> {
     let code = |words: &Vec<String>| u16::from_str_radix(words[0].trim_start_matches("0x"), 16).unwrap();
     let is_written = |words: &Vec<String>| Row::from_word(code(words)).unwrap().risk > Risk::Read;
     Ok(words(line)?.into_iter().filter(is_written).collect())
 }
 
 /// Frames that `armctl yrcx WORDS…` would send.
-pub(super) fn frames(words: &[&str]) -> Result<Vec<Value>, Failure> {
+pub(super) fn frames(words: &[&str]) -> Result<Vec<Value>> {
     Ok(testing::frames(&plan(words)?))
 }
 
 /// Report of a dry run.
-pub(super) fn plan(words: &[&str]) -> Result<Value, Failure> {
+pub(super) fn plan(words: &[&str]) -> Result<Value> {
     let (robot, command) = resolved(DRY, words)?;
     planned::<Yrcx>(&robot, &*command, |link| link.set_unit(unit(words)))
 }
 
 /// Returns the report of a dry run of a command line for this target.
-pub(super) fn planned_line(target: &str, line: &str) -> Result<Value, Failure> {
+pub(super) fn planned_line(target: &str, line: &str) -> Result<Value> {
     let words: Vec<&str> = line.split(' ').collect();
     let (robot, command) = resolved(target, &words)?;
     planned::<Yrcx>(&robot, &*command, |link| link.set_unit(unit(&words)))
@@ -150,7 +145,7 @@ pub(super) fn planned_line(target: &str, line: &str) -> Result<Value, Failure> {
 const DRY: &str = "eip://127.0.0.1";
 
 /// Runs a command line on a scripted controller. Returns its data and the controller.
-pub(super) fn run_on(scripted: Scripted, line: &[&str]) -> (Result<Value, Failure>, Scripted) {
+pub(super) fn run_on(scripted: Scripted, line: &[&str]) -> (Result<Value>, Scripted) {
     let mut bench = Bench::new(scripted);
     let outcome = bench.run(line);
     (outcome, bench.into_peer())
@@ -172,7 +167,7 @@ pub(super) struct Bench {
 }
 
 /// Controller that the link and the test share.
-type SharedController = std::sync::Arc<std::sync::Mutex<Scripted>>;
+type SharedController = Arc<std::sync::Mutex<Scripted>>;
 
 #[derive(Debug)]
 struct Handle(SharedController);
@@ -242,13 +237,13 @@ impl Bench {
 
     /// Runs `armctl yrcx WORDS…` and returns the data of its report. If the report contains a failure, returns this
     /// failure.
-    pub(super) fn run(&mut self, words: &[&str]) -> Result<Value, Failure> {
+    pub(super) fn run(&mut self, words: &[&str]) -> Result<Value> {
         let (data, failure) = self.report(words)?;
         failure.map_or(Ok(data), Err)
     }
 
     /// Runs a command line, and returns the data of its report and the failure in it.
-    pub(super) fn report(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
+    pub(super) fn report(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>)> {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link, .. } = self;
         link.set_unit(unit(words));
@@ -273,7 +268,7 @@ impl Bench {
     }
 
     /// Stops a motion, as Ctrl-C does.
-    pub(super) fn halt(&mut self) -> Result<String, Failure> {
+    pub(super) fn halt(&mut self) -> Result<String> {
         self.runtime.block_on(Yrcx::halt(&mut self.link))
     }
 
@@ -285,7 +280,7 @@ impl Bench {
     /// Closes the link and returns the controller.
     pub(super) fn into_peer(self) -> Scripted {
         self.runtime.block_on(Yrcx::close(self.link, &quiet())).expect("it closes");
-        std::sync::Arc::into_inner(self.peer).expect("the link is gone").into_inner().unwrap()
+        Arc::into_inner(self.peer).expect("the link is gone").into_inner().unwrap()
     }
 }
 
@@ -424,10 +419,10 @@ impl ImagePeer for Scripted {
 }
 
 /// The family.
-const FACE: &dyn Face = &Registered::<Yrcx>::FACE;
+const FACE: &Face = &Face::of::<Yrcx>();
 
 /// Robot and command of a line.
-pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
+pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>)> {
     testing::resolve(FACE, target, words)
 }
 

@@ -5,16 +5,12 @@
 //! All clients of a session share the remote commands of the controller, and only one command can run at a time. So in
 //! a session, a view sends one remote command per interval and keeps the results.
 
-use std::time::Duration;
-
 use tokio::time::Instant;
 
 use super::info::servos;
-use super::link::{Link, Yrcx};
 use super::overview::{alarm, latest, not_asked, report};
 use super::position::mm;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::answer::Status;
 use armctl_controller::yrcx::table::Command;
 use armctl_frame::Family as _;
@@ -57,7 +53,7 @@ impl registration::Poller for Poller {
     type Family = Yrcx;
 
     /// Opens the poller. The poller only reads. Its connection does not affect the controller when it closes.
-    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
+    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self> {
         let mut robot = robot.clone();
         if let Place::Bus(bus) = &mut robot.target.value.place {
             bus.listen_before = MIN_MESSAGE_INTERVAL;
@@ -66,7 +62,7 @@ impl registration::Poller for Poller {
         Ok(Self { link, told: CommandResults::default(), next: 0, asked: None })
     }
 
-    async fn look(&mut self, detail: Detail) -> Result<Sample, Failure> {
+    async fn look(&mut self, detail: Detail) -> Result<Sample> {
         let image = self.link.look().await?;
         let not_asked = not_asked(&self.link, &image);
         if not_asked.is_none() {
@@ -85,14 +81,14 @@ impl registration::Poller for Poller {
         &mut self.link
     }
 
-    async fn close(self, screen: &Screen) -> Result<(), Failure> {
+    async fn close(self, screen: &Screen) -> Result<()> {
         Yrcx::close(self.link, screen).await
     }
 }
 
 impl Poller {
     /// Sends the remote commands that are due.
-    async fn ask(&mut self, detail: Detail, image: &Image) -> Result<(), Failure> {
+    async fn ask(&mut self, detail: Detail, image: &Image) -> Result<()> {
         let questions = self.questions(detail, output::ALARM.is_on(image));
         if !self.link.is_shared() {
             for question in questions {
@@ -121,7 +117,7 @@ impl Poller {
     }
 
     /// Sends a read command and stores the result.
-    async fn put(&mut self, command: Command) -> Result<(), Failure> {
+    async fn put(&mut self, command: Command) -> Result<()> {
         let order: Order = match command {
             Command::AlarmHistory => latest()?,
             // 0 selects all axes.

@@ -1,16 +1,12 @@
 //! Trace of images: as text when an image changes, or as a capture file with every packet.
 
 use std::collections::VecDeque;
-use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, SyncSender};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Duration;
 
-use anyhow::Context as _;
-
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::text::hex;
 use armctl_controller::yrcx::image_changes::changes;
 use armctl_frame::trace;
@@ -27,7 +23,7 @@ pub struct Trace {
 
 impl Trace {
     /// Opens the trace that the options request.
-    pub fn open(access: &Access, screen: &Screen, is_network: bool) -> Result<Self, Failure> {
+    pub fn open(access: &Access, screen: &Screen, is_network: bool) -> Result<Self> {
         let to_file = access.trace.as_deref().is_some_and(|path| path != Path::new("-"));
         let text = if is_network && to_file {
             // On a network, the packet recorder writes the file: see `Recorder`.
@@ -63,7 +59,7 @@ impl Trace {
     }
 
     /// Closes the trace and reports whether it is complete.
-    pub fn finish(&mut self) -> Result<(), Failure> {
+    pub fn finish(&mut self) -> Result<()> {
         self.text.finish()
     }
 
@@ -132,7 +128,7 @@ const MAX_QUEUED: usize = 65_536;
 /// disk.
 #[derive(Debug)]
 pub struct Recorder {
-    writer: JoinHandle<Result<(), Failure>>,
+    writer: JoinHandle<Result<()>>,
     /// Packets with their time; `None` marks the end.
     packets: SyncSender<Option<(Duration, TrafficRecord)>>,
     /// Number of packets dropped because the queue was full.
@@ -141,7 +137,7 @@ pub struct Recorder {
 
 impl Recorder {
     /// Starts the recording, if the user requested a file. `link_type` is the link type of a capture file.
-    pub fn start(access: &Access, screen: &Screen, link_type: u16) -> Result<Option<(Self, Tap)>, Failure> {
+    pub fn start(access: &Access, screen: &Screen, link_type: u16) -> Result<Option<(Self, Tap)>> {
         if access.trace.as_deref().is_none_or(|path| path == Path::new("-")) {
             return Ok(None);
         }
@@ -172,7 +168,7 @@ impl Recorder {
     }
 
     /// Waits until all packets are written, and reports whether the trace is complete.
-    pub fn finish(self) -> Result<(), Failure> {
+    pub fn finish(self) -> Result<()> {
         // If the writer has already ended, `join` returns its error.
         let _ = self.packets.send(None);
         self.writer.join().unwrap_or_else(|_| Err(trace::incomplete("the writer failed")))?;

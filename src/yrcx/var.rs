@@ -6,7 +6,6 @@ use super::link;
 use super::number_arguments::{named, single};
 use super::numbered_tables::{Kind, Numbered};
 use super::single_command::{SingleCommand, single_command};
-use crate::complete;
 use crate::prelude::*;
 use armctl_controller::names;
 use armctl_controller::yrcx::value::Value;
@@ -202,7 +201,7 @@ macro_rules! changes {
                     self.operand.put(draft.with(Key::Variable, self.variable))
                 }
 
-                fn report(&self, done: &link::CommandResult) -> Result<Changed, Failure> {
+                fn report(&self, done: &link::CommandResult) -> Result<Changed> {
                     let (variable, operand) = (name(self.variable), self.operand.describe());
                     let words = format!($told, variable = variable, operand = operand);
                     Ok(self.operand.report(variable, $does, words, done))

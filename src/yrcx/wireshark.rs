@@ -1,14 +1,11 @@
 //! Wireshark dissector of the images of a YRCX on all fieldbuses, from the tables of commands and signals.
 
-use serde_json::{Value, json};
-
+use crate::prelude::basics::*;
 use armctl_controller::units::Unit;
-use armctl_controller::yrcx::alarm::{Alarm, KNOWN, STOP_INPUT};
+use armctl_controller::yrcx::alarm::{KNOWN, STOP_INPUT};
 use armctl_controller::yrcx::answer::Status;
-use armctl_controller::yrcx::image::{COMMAND_WORDS, IMAGE_WORDS, Image};
-use armctl_controller::yrcx::signal::{Side, Signal};
+use armctl_controller::yrcx::image::{COMMAND_WORDS, IMAGE_WORDS};
 use armctl_controller::yrcx::table::{COMMON_LINES, DurationClass, Field, Form, ROWS, Row, Show};
-use armctl_controller::yrcx::value::Key;
 use armctl_frame::wireshark::{FilterFields, part, table};
 use armctl_transport::eip::settings::Settings;
 

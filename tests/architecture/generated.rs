@@ -87,7 +87,7 @@ fn every_robot_command_has_a_schema_and_help() {
     assert_eq!(known.len(), ids.len(), "an id is there twice: {ids:?}");
     let root = armctl::cli::Cli::command();
     let mut words = BTreeSet::new();
-    for family in FAMILIES.iter().map(|face| face.family().name()) {
+    for family in FAMILIES.iter().map(|face| face.family.name()) {
         leaves(root.find_subcommand(family).expect("the family is there"), family, &mut words);
     }
     // The command `repl` has no report, because each line at its prompt has its own report.

@@ -3,23 +3,18 @@
 //! The values come from reports of read commands, through an open session or from a simulator. A key press must never
 //! open a link to a real controller, change anything, or wait long. Values that arrive too late are not offered.
 
-use std::sync::Arc;
 use std::sync::mpsc::{self, Sender};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-use serde_json::Value;
 use tokio::time::timeout;
 
 use crate::app::parser::Parser;
 use crate::app::prepare::{Invocation, Task};
-use armctl_frame::confirmation::Confirmer;
-use armctl_frame::output::{ColorChoice, Format, Screen, escape};
-use armctl_frame::settings::target::Family;
-use armctl_frame::settings::{Robot, Sessions, Setting, Sources};
+use armctl_frame::output::{ColorChoice, Format, escape};
+use armctl_frame::prelude::*;
+use armctl_frame::settings::{Sessions, Setting, Sources};
 use armctl_frame::value_kind::{Ask, CandidateFunction};
-use armctl_frame::{Access, AnyContext, Candidate, ConnectionEffect};
+use armctl_frame::{AnyContext, Candidate, ConnectionEffect};
 
 /// Maximum time to wait for a robot.
 pub(super) const ASK_TIMEOUT: Duration = Duration::from_millis(300);

@@ -1,9 +1,6 @@
 //! Completion values by kind.
 
-use std::collections::BTreeMap;
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args as _, Command, FromArgMatches as _};
@@ -12,13 +9,13 @@ use super::live;
 use crate::app::prepare::{Need, sources};
 use crate::command::about::{help, schema};
 use crate::command::families::{self, FAMILIES};
+use armctl_frame::Candidate;
 use armctl_frame::backup::manifest;
 use armctl_frame::flags::Globals;
-use armctl_frame::names;
+use armctl_frame::prelude::*;
 use armctl_frame::settings::Sources;
 use armctl_frame::settings::inventory::{Inventory, Location};
 use armctl_frame::value_kind::Named;
-use armctl_frame::{Candidate, ValueKind};
 use armctl_transport::session::location::{SessionFolder, SessionPath};
 
 /// Data from the rest of the line that the values depend on: the selected robots and the settings.
@@ -98,11 +95,11 @@ fn all(kind: ValueKind, context: &Context) -> Vec<Candidate> {
         ValueKind::RobotOrUrl => [robots(context), urls()].concat(),
         ValueKind::Tag => tags(context),
         ValueKind::Url => urls(),
-        ValueKind::Family => FAMILIES.map(|face| Candidate::new(face.family().name(), face.title())).into(),
+        ValueKind::Family => FAMILIES.map(|face| Candidate::new(face.family.name(), face.title)).into(),
         ValueKind::HelpWord => help::topics().map(|(name, about)| Candidate::new(name, about)).collect(),
         ValueKind::Schema => schema::all().iter().map(|entry| Candidate::new(entry.id, "")).collect(),
         ValueKind::Code(family) => {
-            families::of(family).codes().into_iter().map(|(code, name)| Candidate::new(code, name)).collect()
+            (families::of(family).codes)().into_iter().map(|(code, name)| Candidate::new(code, name)).collect()
         }
         ValueKind::Session => sessions(),
         ValueKind::Backup => backups(),
@@ -141,7 +138,7 @@ fn tags(context: &Context) -> Vec<Candidate> {
 /// Prefixes of target URLs.
 fn urls() -> Vec<Candidate> {
     let simulator = ("sim:".to_owned(), "the built-in simulator");
-    let urls = FAMILIES.iter().flat_map(|face| face.urls());
+    let urls = FAMILIES.iter().flat_map(|face| (face.urls)());
     std::iter::once(simulator).chain(urls).map(|(url, about)| Candidate::new(url, about).incomplete()).collect()
 }
 

@@ -1,10 +1,8 @@
 //! Line editor in its own thread, so that links and signals are handled while the user types.
 
-use std::path::PathBuf;
 use std::sync::mpsc as blocking;
 use std::sync::{Mutex, PoisonError};
 
-use anyhow::Context as _;
 use rustyline::config::{Behavior, BellStyle, CompletionType};
 use rustyline::error::ReadlineError;
 use rustyline::history::FileHistory;
@@ -13,9 +11,9 @@ use tokio::sync::mpsc;
 
 use super::assistant::Assistant;
 use super::prompt::Prompt;
-use armctl_frame::failure::Failure;
 use armctl_frame::local_names::state_folder;
-use armctl_frame::output::{Screen, escape};
+use armctl_frame::output::escape;
+use armctl_frame::prelude::*;
 
 /// Maximum number of lines in the history.
 const HISTORY_SIZE: usize = 2000;
@@ -45,10 +43,7 @@ type LineEditor = rustyline::Editor<Assistant, FileHistory>;
 impl Editor {
     /// Takes control of the terminal. Returns the editor with a function that prints messages above the line that the
     /// user types.
-    pub fn start(
-        screen: &Screen,
-        assistant: Assistant,
-    ) -> Result<(Self, impl Fn(&str) + Send + Sync + 'static), Failure> {
+    pub fn start(screen: &Screen, assistant: Assistant) -> Result<(Self, impl Fn(&str) + Send + Sync + 'static)> {
         let (prompts, asked) = blocking::channel();
         let (answer, typed) = mpsc::unbounded_channel();
         let mut editor = editor(screen, assistant).map_err(|error| unusable(&error))?;

@@ -1,7 +1,5 @@
 //! Prompt text: the robot and its state.
 
-use std::time::Duration;
-
 use tokio::time::timeout;
 
 use crate::command::fleet::status;
@@ -92,7 +90,6 @@ fn states(robot: &Robot, seen: &RobotState) -> Vec<Cell> {
 mod tests {
     use super::*;
     use armctl_frame::robot::state::{Fault, State};
-    use armctl_frame::settings::target::Family;
     use armctl_frame::settings::{Selection, Sources};
 
     fn simulated() -> Robot {

@@ -1,7 +1,5 @@
 //! `armctl completions SHELL`.
 
-use clap::ValueEnum;
-
 use armctl_frame::prelude::*;
 
 /// Print a completion script.
@@ -28,7 +26,7 @@ pub enum Shell {
 
 impl Completions {
     /// Prints the script.
-    pub fn run(self, run: &Run) -> Result<(), Failure> {
+    pub fn run(self, run: &Run) -> Result<()> {
         run.screen.data(self.shell.script())
     }
 }

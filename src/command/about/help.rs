@@ -5,7 +5,6 @@ use clap::builder::StyledStr;
 
 use super::{environment, page};
 use crate::command::families::FAMILIES;
-use armctl_controller::similar_word::nearest;
 use armctl_frame::face::Face;
 use armctl_frame::prelude::*;
 
@@ -49,7 +48,7 @@ const OPTIONS: &str = "options";
 
 impl Help {
     /// Prints the help; `root` creates the whole command line.
-    pub fn run(self, run: &Run, root: fn() -> Command) -> Result<(), Failure> {
+    pub fn run(self, run: &Run, root: fn() -> Command) -> Result<()> {
         run.screen.read(&text(&self.words, run.screen.stdout_color(), root)?)
     }
 }
@@ -69,21 +68,21 @@ pub fn topics() -> impl Iterator<Item = (String, &'static str)> {
 
 /// Additional topics of the families.
 fn sections() -> Vec<(&'static str, &'static str, String)> {
-    FAMILIES.iter().flat_map(|face| face.topics()).collect()
+    FAMILIES.iter().flat_map(|face| (face.topics)()).collect()
 }
 
 /// Setup topics of the families.
 fn setups() -> Vec<(String, &'static str, &'static str)> {
     let mut setups = FAMILIES.map(|face| {
-        let (about, text) = face.setup();
-        (format!("{}-setup", face.family()), about, text)
+        let (about, text) = face.setup;
+        (format!("{}-setup", face.family), about, text)
     });
     setups.sort_unstable();
     setups.into()
 }
 
 /// Help for these words; without words, the help of armctl and the list of topics.
-pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<String, Failure> {
+pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<String> {
     if let [word] = words {
         if word == EXIT_CODES {
             return Ok(exit_codes());
@@ -134,14 +133,14 @@ pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<Stri
 }
 
 fn start_states() -> String {
-    let example = |face: &&dyn Face| {
+    let example = |face: &&Face| {
         format!(
             "
 Keys of {}:
 
 {}",
-            face.family(),
-            comments_above(face.start_state())
+            face.family,
+            comments_above(face.start_state)
         )
     };
     FAMILIES.iter().map(example).collect()

@@ -1,10 +1,7 @@
 //! `armctl man`: man pages, one per noun.
 
-use std::collections::BTreeSet;
 use std::io::{self, Write as _};
-use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
 use clap::Command;
 
 use super::{environment, page};
@@ -21,7 +18,7 @@ pub struct Man {
 
 impl Man {
     /// Writes the pages; `root` creates the whole command line.
-    pub fn run(self, run: &Run, root: fn() -> Command) -> Result<(), Failure> {
+    pub fn run(self, run: &Run, root: fn() -> Command) -> Result<()> {
         let pages = pages(root())?;
         let Some(dir) = self.dir else {
             let first = pages.first().map(|(_, page)| page.as_slice()).unwrap_or_default();
@@ -35,13 +32,13 @@ impl Man {
     }
 }
 
-fn write(path: &Path, page: &[u8]) -> Result<(), Failure> {
+fn write(path: &Path, page: &[u8]) -> Result<()> {
     Ok(std::fs::write(path, page).with_context(|| path.display().to_string())?)
 }
 
 /// File name and text of every man page: `armctl.1`, one for each noun (`armctl-toyo-counter.1`), and one for each
 /// command without a noun (`armctl-status.1`). The page of a noun describes its verbs.
-pub fn pages(mut root: Command) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+pub fn pages(mut root: Command) -> Result<Vec<(String, Vec<u8>)>> {
     root.build();
     let mut pages = Vec::new();
     pages_below(&root, &root, &[], &mut pages).map_err(|error| Failure::io("man pages", &error))?;

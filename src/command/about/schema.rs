@@ -1,8 +1,6 @@
 //! `armctl schema ID`: the JSON Schema of a report.
 
-use std::collections::BTreeMap;
-
-use serde_json::{Map, Value, json};
+use serde_json::Map;
 
 use super::wireshark::WrittenDissectors;
 use crate::command::families::FAMILIES;
@@ -11,7 +9,6 @@ use crate::command::fleet::status::{Fleet, Overview};
 use crate::command::fleet::{cell, common, names, record, rehearsal, robots, session, tools, wait};
 #[cfg(feature = "plant")]
 use crate::command::fleet::{metrics, publish};
-use armctl_controller::similar_word::nearest;
 use armctl_frame::background::Opened;
 use armctl_frame::backup::check::Checked;
 use armctl_frame::backup::family_backup::{Backup, Diff, Restore};
@@ -33,7 +30,7 @@ pub struct SchemaOf {
 
 impl SchemaOf {
     /// Prints the schema.
-    pub fn run(self, run: &Run) -> Result<(), Failure> {
+    pub fn run(self, run: &Run) -> Result<()> {
         let all = all();
         let Some(id) = self.id else {
             let names: String = all.iter().map(|entry| format!("{}\n", entry.id)).collect();
@@ -52,7 +49,7 @@ impl SchemaOf {
 
 /// Schemas of all reports, of the envelope, and of the failure and dry-run data of the envelope.
 pub fn all() -> Vec<SchemaEntry> {
-    let mut all: Vec<SchemaEntry> = FAMILIES.iter().flat_map(|face| face.schemas()).collect();
+    let mut all: Vec<SchemaEntry> = FAMILIES.iter().flat_map(|face| (face.schemas)()).collect();
     all.extend(Overview::schemas());
     all.extend(common::schemas());
     all.push(wait::schema());

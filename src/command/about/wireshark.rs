@@ -1,12 +1,8 @@
 //! `armctl wireshark`: Wireshark dissectors of all protocols, written from the tables of the families.
 
 use std::fs;
-use std::path::PathBuf;
-
-use anyhow::Context as _;
 
 use crate::command::families::FAMILIES;
-use armctl_frame::face::Face;
 use armctl_frame::prelude::*;
 use armctl_frame::wireshark::PRELUDE;
 
@@ -34,7 +30,7 @@ impl Wireshark {
         let (path, text) = (self.folder.join(FILE), dissectors());
         fs::create_dir_all(&self.folder).with_context(|| self.folder.display().to_string())?;
         fs::write(&path, &text).with_context(|| path.display().to_string())?;
-        let families = FAMILIES.map(|face| face.family().name()).into();
+        let families = FAMILIES.map(|face| face.family.name()).into();
         run.local("wireshark", &WrittenDissectors { path: path.display().to_string(), bytes: text.len(), families })
     }
 }
@@ -44,7 +40,7 @@ fn dissectors() -> String {
     const HEAD: &str =
         concat!("-- Written by armctl ", env!("CARGO_PKG_VERSION"), " from its tables: `armctl wireshark`.\n");
 
-    [HEAD.to_owned(), PRELUDE.to_owned()].into_iter().chain(FAMILIES.map(<dyn Face>::dissector)).collect()
+    [HEAD.to_owned(), PRELUDE.to_owned()].into_iter().chain(FAMILIES.map(|face| (face.dissector)())).collect()
 }
 
 /// The written file.

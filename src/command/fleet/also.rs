@@ -3,12 +3,9 @@
 
 use std::rc::Rc;
 
-use clap::Args;
-
 use super::poll::Extra;
 use super::publish::topic;
-use armctl_frame::failure::Failure;
-use armctl_frame::settings::target::Family;
+use armctl_frame::prelude::*;
 
 /// The flag for extra commands.
 #[derive(Debug, Args)]
@@ -29,7 +26,7 @@ pub struct AlsoCommand {
 
 impl AlsoArguments {
     /// Parses all lines. Each command must only read, and its name must be unique and not reserved.
-    pub fn commands(&self, is_reserved: impl Fn(&str) -> bool) -> Result<Rc<[AlsoCommand]>, Failure> {
+    pub fn commands(&self, is_reserved: impl Fn(&str) -> bool) -> Result<Rc<[AlsoCommand]>> {
         let mut all: Vec<AlsoCommand> = Vec::with_capacity(self.also.len());
         for line in &self.also {
             let also = AlsoCommand::new(line)?;
@@ -48,7 +45,7 @@ impl AlsoArguments {
 }
 
 impl AlsoCommand {
-    fn new(line: &str) -> Result<Self, Failure> {
+    fn new(line: &str) -> Result<Self> {
         let (name, text) = match line.split_once('=') {
             Some((name, text)) if !name.is_empty() && !name.contains(char::is_whitespace) => (Some(name), text),
             _ => (None, line),

@@ -1,9 +1,5 @@
 //! `armctl backup`, `restore` and `diff` for robots of any family. The commands of the family do the work.
 
-use std::path::PathBuf;
-
-use anyhow::Context as _;
-
 use crate::command::families;
 use crate::command::fleet::status::{Fleet, Link};
 use armctl_frame::AnyContext;
@@ -106,7 +102,7 @@ impl Command for Reading {
         Fleet::backup_risk(robot)
     }
 
-    async fn run(&self, context: Context<'_, Fleet>) -> Result<BackupReport, Failure> {
+    async fn run(&self, context: Context<'_, Fleet>) -> Result<BackupReport> {
         let folder = self.place(context.robot);
         let options = SaveOptions { folder, scope: Some(self.scope.clone()), resume: false, force: false };
         let result = Fleet::back_up(context, options).await?;
@@ -120,22 +116,22 @@ impl Backups for Fleet {
     const BACKUP_RISK: Risk = Risk::Write;
 
     fn backup_risk(robot: &Robot) -> Risk {
-        families::of(robot.family).backup_risk(robot)
+        (families::of(robot.family).backup_risk)(robot)
     }
 
-    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport> {
         let (face, context) = open_folder(context)?;
-        face.back_up(context, making).await
+        (face.back_up)(context, making).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport> {
         let (face, context) = open_folder(context)?;
-        face.restore(context, restoring).await
+        (face.restore)(context, restoring).await
     }
 }
 
 /// Splits a context of any family into its face and connection.
-fn open_folder(context: Context<'_, Fleet>) -> Result<(&'static dyn Face, AnyContext<'_>), Failure> {
+fn open_folder(context: Context<'_, Fleet>) -> Result<(&'static Face, AnyContext<'_>)> {
     let Context { link, screen, robot, confirmer, .. } = context;
     match link {
         Link::Open(face, connection) => {

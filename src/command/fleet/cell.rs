@@ -2,15 +2,12 @@
 
 use std::ffi::OsString;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use clap::{Args, ValueHint};
+use clap::ValueHint;
 use toml_edit::{Table as TomlTable, value};
 
 use crate::command::families;
 use armctl_controller::simulator::run_options::Speed;
-use armctl_files as files;
 use armctl_frame::SchemaEntry;
 use armctl_frame::backup::manifest::{self, Manifest};
 use armctl_frame::backup::recording::{self, Head, Recorded};
@@ -18,9 +15,7 @@ use armctl_frame::local_names::Target;
 use armctl_frame::prelude::*;
 use armctl_frame::serve;
 use armctl_frame::settings::document::Document;
-use armctl_frame::settings::duration;
 use armctl_frame::settings::inventory::{Inventory, is_name};
-use armctl_frame::settings::target::Family;
 
 /// Simulators for the robots of a backup.
 #[derive(Debug, Args)]
@@ -103,7 +98,7 @@ pub fn schema() -> SchemaEntry {
 }
 
 /// A file that does not exist, or that this command has written.
-fn replaceable(path: PathBuf) -> Result<Target, Failure> {
+fn replaceable(path: PathBuf) -> Result<Target> {
     let is_own = files::text(&path, files::SETTINGS).is_ok_and(|text| text.starts_with(HEADER));
     Target::new(path, is_own).map_err(|failure| failure.hint("use another path for the robots.toml of the cell"))
 }
@@ -127,12 +122,12 @@ pub struct SavedRobot {
 const OWN_KEYS: [&str; 3] = ["name", "target", "family"];
 
 /// Robots of a backup: of one robot, or of a fleet with a subfolder for each robot.
-pub fn robots_in(folder: &Path) -> Result<Vec<SavedRobot>, Failure> {
+pub fn robots_in(folder: &Path) -> Result<Vec<SavedRobot>> {
     saved_robots(folder, &[manifest::MANIFEST])
 }
 
 /// Robots of recordings and backups, in the same folders. At least one robot has a recording.
-fn recorded_robots_in(folder: &Path) -> Result<Vec<SavedRobot>, Failure> {
+fn recorded_robots_in(folder: &Path) -> Result<Vec<SavedRobot>> {
     if !folder.join(recording::FILE).exists() && manifest::folders_with(folder, &[recording::FILE]).is_empty() {
         return Err(Failure::local(format!("{} contains no {}", folder.display(), recording::FILE))
             .hint(format!("record the robots: `armctl record {} --all`", folder.display())));
@@ -141,13 +136,13 @@ fn recorded_robots_in(folder: &Path) -> Result<Vec<SavedRobot>, Failure> {
 }
 
 /// Duration of the longest recording.
-fn longest_recording(robots: &[SavedRobot]) -> Result<Duration, Failure> {
+fn longest_recording(robots: &[SavedRobot]) -> Result<Duration> {
     let passes = robots.iter().filter_map(SavedRobot::recording_path).map(|path| Ok(Recorded::read(&path)?.pass()));
-    passes.collect::<Result<Vec<_>, Failure>>().map(|passes| passes.into_iter().max().unwrap_or_default())
+    passes.collect::<Result<Vec<_>>>().map(|passes| passes.into_iter().max().unwrap_or_default())
 }
 
 /// Robots of the folders that contain one of these files.
-fn saved_robots(folder: &Path, files: &[&str]) -> Result<Vec<SavedRobot>, Failure> {
+fn saved_robots(folder: &Path, files: &[&str]) -> Result<Vec<SavedRobot>> {
     let is_saved = |folder: &Path| files.iter().any(|file| folder.join(file).exists());
     let folders = if is_saved(folder) { Vec::new() } else { manifest::folders_with(folder, files) };
     let folders = if folders.is_empty() { vec![folder.to_owned()] } else { folders };
@@ -184,7 +179,7 @@ fn saved_robots(folder: &Path, files: &[&str]) -> Result<Vec<SavedRobot>, Failur
 
 impl SavedRobot {
     /// Serves the robot on free ports of the loopback interface.
-    async fn serve(&self, speed: Speed, pass: Option<Duration>) -> Result<serve::NamedServer, Failure> {
+    async fn serve(&self, speed: Speed, pass: Option<Duration>) -> Result<serve::NamedServer> {
         let mut arguments: Vec<OsString> = ["--bind", "127.0.0.1:0", "--speed"].map(OsString::from).into();
         arguments.push(speed.to_string().into());
         if self.folder.join(manifest::MANIFEST).exists() {
@@ -196,7 +191,7 @@ impl SavedRobot {
             arguments.extend(["--replay".into(), recording.into()]);
             arguments.extend(pass.map(|pass| format!("--loop={}", duration::display(pass)).into()));
         }
-        families::of(self.family).serve(self.name.clone(), arguments).await
+        (families::of(self.family).serve)(self.name.clone(), arguments).await
     }
 
     fn recording_path(&self) -> Option<PathBuf> {
@@ -204,7 +199,7 @@ impl SavedRobot {
     }
 
     /// URL of the simulator of the robot in this process.
-    pub fn simulator_url(&self) -> Result<String, Failure> {
+    pub fn simulator_url(&self) -> Result<String> {
         let path = std::path::absolute(&self.folder).map_err(|error| Failure::io(self.folder.display(), &error))?;
         let mut url = "sim:?from=".to_owned();
         for byte in path.as_os_str().as_encoded_bytes() {
@@ -218,7 +213,7 @@ impl SavedRobot {
     }
 
     /// Inventory entry of the robot at another target.
-    pub fn entry(&self, target: &str) -> Result<TomlTable, Failure> {
+    pub fn entry(&self, target: &str) -> Result<TomlTable> {
         let mut table = TomlTable::new();
         table["name"] = value(&self.name);
         table["target"] = value(target);
@@ -230,7 +225,7 @@ impl SavedRobot {
         Ok(table)
     }
 
-    fn damaged(&self, why: &dyn std::fmt::Display) -> Failure {
+    fn damaged(&self, why: &dyn fmt::Display) -> Failure {
         Failure::local(format!("{}: `inventory` is damaged: {why}", self.folder.join(manifest::MANIFEST).display()))
             .hint("remove `inventory` from the manifest.json")
     }
@@ -249,7 +244,7 @@ impl SavedRobot {
 }
 
 /// A `robots.toml` with these entries. It has the settings that the backup contains.
-pub fn inventory_text(folder: &Path, entries: Vec<TomlTable>) -> Result<String, Failure> {
+pub fn inventory_text(folder: &Path, entries: Vec<TomlTable>) -> Result<String> {
     let broken = |why: &str| Failure::local(format!("internal error: {why}"));
     let mut document = Document::parse("").map_err(|error| broken(&error.to_string()))?;
     let (count, mut has_default) = (entries.len(), false);

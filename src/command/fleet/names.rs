@@ -58,7 +58,7 @@ impl Names {
 }
 
 /// The one selected robot.
-fn one(run: &Run) -> Result<Robot, Failure> {
+fn one(run: &Run) -> Result<Robot> {
     let mut robots = run.sources.robots(None)?;
     match (robots.pop(), robots.len()) {
         (Some(robot), 0) => Ok(robot),

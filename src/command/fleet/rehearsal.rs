@@ -1,22 +1,14 @@
 //! Report of `armctl rehearse`: what commands changed on the simulators of a backup.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-
-use serde_json::Value;
-
 use armctl_controller::simulator::run_options::Motion;
 use armctl_controller::text::Encoding;
-use armctl_files as files;
 use armctl_frame::SchemaEntry;
 use armctl_frame::backup::Only;
 use armctl_frame::backup::compare::{BackupSide, CompareOptions, Difference, Differences, State};
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::text_diff::{MAX_TEXT, unified};
-use armctl_frame::output::view::Section;
 use armctl_frame::prelude::*;
 use armctl_frame::settings::rehearsal::Question;
-use armctl_frame::settings::target::Family;
 
 /// Name in envelopes and schemas.
 pub const ID: &str = "rehearse";
@@ -116,7 +108,7 @@ impl From<Motion> for MotionResult {
     fn from(Motion { group, from, to, unit, distance_mm, began, took, reached }: Motion) -> Self {
         // The sum with 0.0 turns -0.0 into 0.0.
         let rounded = |value: f64| (value * 1000.0).round() / 1000.0 + 0.0;
-        let ms = |time: std::time::Duration| u64::try_from(time.as_millis()).unwrap_or(u64::MAX);
+        let ms = |time: Duration| u64::try_from(time.as_millis()).unwrap_or(u64::MAX);
         Self {
             group,
             from: from.into_iter().map(rounded).collect(),
@@ -142,7 +134,7 @@ pub struct Snapshot {
 
 impl RehearsedRobot {
     /// Compares two snapshots of a robot.
-    pub fn compare(robot: &str, family: Family, [old, new]: [&Snapshot; 2]) -> Result<Self, Failure> {
+    pub fn compare(robot: &str, family: Family, [old, new]: [&Snapshot; 2]) -> Result<Self> {
         let side = |folder: &Path| {
             Ok::<_, Failure>(BackupSide {
                 manifest: manifest::open_existing(folder)?,
@@ -303,7 +295,7 @@ impl RehearsedRobot {
         let mut moved = Table::new(&["moved", "from", "to", "distance", "time", "result"], "");
         for motion in &self.motions {
             let position = |values: &[f64]| values.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
-            let seconds = std::time::Duration::from_millis(motion.elapsed_ms).as_secs_f64();
+            let seconds = Duration::from_millis(motion.elapsed_ms).as_secs_f64();
             moved.row([
                 motion.group.as_str().into(),
                 format!("{} {}", position(&motion.from), motion.unit).into(),

@@ -1,20 +1,15 @@
 //! `armctl report`: an archive for a bug report: versions, check, settings, state, alarms, recent frames.
 
-use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
-use std::path::PathBuf;
 
-use anyhow::Context as _;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use jiff::Zoned;
-use serde_json::{Value, json};
 
 use crate::command::fleet::robots::Shown;
 use crate::command::fleet::robots::check::{CheckReport, Checked};
 use crate::command::fleet::status::{Fleet, Link};
-use armctl_files as files;
 use armctl_frame::face::overview::OverviewReport;
 use armctl_frame::local_names::{Target, make_folder};
 use armctl_frame::output::envelope::ErrorBody;
@@ -49,13 +44,10 @@ impl Command for Pack {
     type Family = Checked;
     type Report = Packed;
     const ID: &'static str = "report";
+    const USES_FILES: bool = true;
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
-    fn uses_files(&self) -> bool {
-        true
-    }
-
-    async fn run(&self, context: Context<'_, Checked>) -> Result<Packed, Failure> {
+    async fn run(&self, context: Context<'_, Checked>) -> Result<Packed> {
         let Context { robot, screen, .. } = context;
         if context.link.dry_run {
             return Err(Failure::usage("a report has no dry run: its requests depend on the answers")
@@ -113,8 +105,8 @@ async fn read_state(robot: &Robot, access: Access, screen: &Screen) -> (Value, V
         Ok(Link::Absent(absent)) => return (failed(absent.failure.clone()), failed(absent.failure)),
         Err(failure) => return (failed(failure.clone()), failed(failure)),
     };
-    let status = face.overview(&mut *connection).await;
-    let alarms = face.alarms(&mut *connection).await;
+    let status = (face.overview)(&mut *connection).await;
+    let alarms = (face.alarms)(&mut *connection).await;
     // The archive does not depend on how the connection ends.
     let _ = connection.close(screen).await;
     (
@@ -141,7 +133,7 @@ fn file_part(name: &str) -> String {
 }
 
 /// Writes a compressed tar archive.
-fn write(target: &Target, parts: &[(&'static str, Vec<u8>)]) -> Result<(), Failure> {
+fn write(target: &Target, parts: &[(&'static str, Vec<u8>)]) -> Result<()> {
     let mut tar = GzEncoder::new(Vec::new(), Compression::default());
     let packed = parts.iter().try_for_each(|(name, content)| {
         tar.write_all(&tar_header(name, content.len()))?;

@@ -6,8 +6,6 @@ pub mod edit;
 pub mod entry;
 pub mod file;
 
-use std::time::Duration;
-
 use clap::Subcommand;
 
 use self::entry::check_known;
@@ -15,7 +13,7 @@ use armctl_frame::prelude::*;
 use armctl_frame::settings::inventory::{Entry, matches_pattern};
 use armctl_frame::settings::model::ModelCache;
 use armctl_frame::settings::place::Place;
-use armctl_frame::settings::{Origin, Setting, duration};
+use armctl_frame::settings::{Origin, Setting};
 
 /// Commands for the inventory.
 #[derive(Debug, Subcommand)]
@@ -138,7 +136,7 @@ struct Listed {
 
 impl List {
     /// Selected robots; all without a selection.
-    fn of(run: &Run) -> Result<Self, Failure> {
+    fn of(run: &Run) -> Result<Self> {
         let (inventory, selection) = (&run.sources.inventory, &run.sources.selection);
         if selection.sim || selection.target.is_some() {
             return Err(Failure::usage("--sim and -t cannot select robots in the inventory")

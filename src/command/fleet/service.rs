@@ -1,11 +1,9 @@
 //! Common parts of long-running services: log of robot events, and notifications to the service manager.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
 use std::io;
 #[cfg(unix)]
-use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use tokio::time::sleep;
 
@@ -32,7 +30,7 @@ pub struct Service {
 
 impl Service {
     /// Finds the service manager of the environment, and raises the limit of open files.
-    pub fn begin(screen: Screen) -> Result<Self, Failure> {
+    pub fn begin(screen: Screen) -> Result<Self> {
         make_room();
         let supervisor = Supervisor::find().map_err(|error| unreachable(&error))?;
         Ok(Self { log: Log::new(screen), supervisor, state: RefCell::default() })
@@ -54,7 +52,7 @@ impl Service {
     }
 
     /// Reports to the service manager that polling has started.
-    pub fn notify_ready(&self, robots: usize) -> Result<(), Failure> {
+    pub fn notify_ready(&self, robots: usize) -> Result<()> {
         let plural = if robots == 1 { "" } else { "s" };
         self.supervisor.ready(&format!("{robots} robot{plural}")).map_err(|error| unreachable(&error))
     }
@@ -252,7 +250,7 @@ fn failed(log: &Log, robot: &Robot, failure: &Failure) {
 /// Kind of a failure, as in the envelope: `no_answer`.
 pub fn kind(failure: &Failure) -> String {
     let name = serde_json::to_value(failure.kind).ok();
-    name.as_ref().and_then(serde_json::Value::as_str).unwrap_or("other").to_owned()
+    name.as_ref().and_then(Value::as_str).unwrap_or("other").to_owned()
 }
 
 /// Raises the soft limit of open files to the hard limit, because each robot needs a socket.

@@ -9,7 +9,7 @@ use armctl_frame::interrupt::{catch_interrupts, interruptible};
 use armctl_frame::output::render;
 use armctl_frame::prelude::*;
 use armctl_frame::prompt::ask;
-use armctl_frame::settings::target::{Family, Target, TargetArgument};
+use armctl_frame::settings::target::{Target, TargetArgument};
 
 /// Asks for address, name and access rights, checks the connection, and writes robots.toml.
 #[derive(Debug, Args)]
@@ -64,23 +64,23 @@ fn no_terminal(failure: Failure) -> Failure {
     }
 }
 
-async fn line(run: &Run, question: impl Into<String>, usual: Option<&str>) -> Result<String, Failure> {
+async fn line(run: &Run, question: impl Into<String>, usual: Option<&str>) -> Result<String> {
     let (screen, question, usual) = (run.screen, question.into(), usual.map(ToOwned::to_owned));
     ask(screen, move || screen.ask_line(&question, usual.as_deref())).await
 }
 
-async fn choice(run: &Run, question: &'static str, options: Vec<String>) -> Result<usize, Failure> {
+async fn choice(run: &Run, question: &'static str, options: Vec<String>) -> Result<usize> {
     let screen = run.screen;
     ask(screen, move || screen.ask_choice(question, &options)).await
 }
 
-async fn yes(run: &Run, question: impl Into<String>, usual: bool) -> Result<bool, Failure> {
+async fn yes(run: &Run, question: impl Into<String>, usual: bool) -> Result<bool> {
     let (screen, question) = (run.screen, question.into());
     ask(screen, move || screen.ask_yes(&question, usual)).await
 }
 
 /// Asks for an address until its check succeeds or the user accepts it.
-async fn ask_target(run: &Run) -> Result<FoundTarget, Failure> {
+async fn ask_target(run: &Run) -> Result<FoundTarget> {
     loop {
         let found = address(run).await?;
         loop {
@@ -97,7 +97,7 @@ async fn ask_target(run: &Run) -> Result<FoundTarget, Failure> {
     }
 }
 
-async fn address(run: &Run) -> Result<FoundTarget, Failure> {
+async fn address(run: &Run) -> Result<FoundTarget> {
     let ways = [
         "type an address or serial port",
         "search: controllers in this network, serial ports",
@@ -119,14 +119,14 @@ async fn address(run: &Run) -> Result<FoundTarget, Failure> {
     }
 }
 
-async fn ask_address(run: &Run) -> Result<FoundTarget, Failure> {
+async fn ask_address(run: &Run) -> Result<FoundTarget> {
     let input = line(run, "Address, such as 192.168.1.31, COM3, /dev/ttyUSB0 or a URL", None).await?;
     ask_missing_parts(run, &input.parse()?, None).await
 }
 
 /// Searches for controllers, and lets the user select one of them; `None` if the user selects none because the right
 /// controller is not in the list.
-async fn search(run: &Run) -> Result<Option<(TargetArgument, Option<Family>)>, Failure> {
+async fn search(run: &Run) -> Result<Option<(TargetArgument, Option<Family>)>> {
     let found = interruptible(Discover::default_arguments()?.find(run)).await??;
     let mut targets = found.places();
     let shown = targets.iter().map(|(target, _, device)| format!("{target}  {device}"));
@@ -139,18 +139,18 @@ async fn search(run: &Run) -> Result<Option<(TargetArgument, Option<Family>)>, F
     Ok(Some((target.parse()?, family.and_then(|family| family.parse().ok()))))
 }
 
-async fn simulator(run: &Run) -> Result<FoundTarget, Failure> {
+async fn simulator(run: &Run) -> Result<FoundTarget> {
     let family = family(run).await?;
     let question = format!(
         "Address of a simulator that runs (`armctl sim {family}`), or `sim:` for the built-in \
                             simulator"
     );
-    let input = line(run, question, Some(families::of(family).simulator())).await?;
+    let input = line(run, question, Some(families::of(family).simulator)).await?;
     ask_missing_parts(run, &input.parse()?, Some(family)).await
 }
 
 /// Asks for the parts that the address does not contain.
-async fn ask_missing_parts(run: &Run, given: &TargetArgument, known: Option<Family>) -> Result<FoundTarget, Failure> {
+async fn ask_missing_parts(run: &Run, given: &TargetArgument, known: Option<Family>) -> Result<FoundTarget> {
     let hint = match given {
         TargetArgument::Url(target) => target.family(),
         TargetArgument::Bare(_) => None,
@@ -164,25 +164,25 @@ async fn ask_missing_parts(run: &Run, given: &TargetArgument, known: Option<Fami
     Ok(FoundTarget { family, target })
 }
 
-async fn family(run: &Run) -> Result<Family, Failure> {
-    let titles = FAMILIES.map(|face| format!("{} ({})", face.title(), face.family()));
+async fn family(run: &Run) -> Result<Family> {
+    let titles = FAMILIES.map(|face| format!("{} ({})", face.title, face.family));
     let at = choice(run, "Which controller is it?", titles.into()).await?;
-    FAMILIES.get(at).map(|face| face.family()).ok_or_else(|| Failure::local("internal error: no such family"))
+    FAMILIES.get(at).map(|face| face.family).ok_or_else(|| Failure::local("internal error: no such family"))
 }
 
 /// Checks each layer and shows it. Returns whether all layers succeeded.
-async fn check(run: &Run, found: &FoundTarget) -> Result<bool, Failure> {
+async fn check(run: &Run, found: &FoundTarget) -> Result<bool> {
     let robot = run.sources.at(&found.target, found.family)?;
     let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Explicit) };
     run.begin_trace()?;
-    let layers = interruptible(families::of(found.family).check(&robot, access, &run.screen)).await??;
+    let layers = interruptible((families::of(found.family).check)(&robot, access, &run.screen)).await??;
     let table = render::text(&View::table(layers::table(&layers)), run.screen.width(), false);
     run.screen.ask_note(&format!("\n{}", table.trim_end()));
     Ok(layers::first_failed(&layers).is_none())
 }
 
 /// Asks for name and access.
-async fn describe(run: &Run, family: Family, target: Target) -> Result<NewRobot, Failure> {
+async fn describe(run: &Run, family: Family, target: Target) -> Result<NewRobot> {
     let (screen, inventory) = (&run.screen, &run.sources.inventory);
     let unused_name =
         (1..=MAX_NAME_NUMBER).map(|number| format!("cell{number}")).find(|name| check_new(inventory, name).is_ok());

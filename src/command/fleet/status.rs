@@ -1,12 +1,8 @@
 //! `armctl status`: one line per robot of any family.
 
-use std::collections::BTreeMap;
-
 use crate::command::families;
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::dry_run::Plan;
-use armctl_frame::face::Face;
-use armctl_frame::face::overview::OverviewReport;
+use armctl_frame::face::{Face, OverviewReport};
 use armctl_frame::output::envelope::Envelope;
 use armctl_frame::prelude::*;
 use armctl_frame::script_line::Line;
@@ -22,7 +18,7 @@ pub struct Fleet;
 /// A connection to a robot of any family.
 pub enum Link {
     /// An open connection with the face of its family.
-    Open(&'static dyn Face, Box<dyn Connection>),
+    Open(&'static Face, Box<dyn Connection>),
     /// No connection, with the reason.
     Absent(Box<Absent>),
 }
@@ -39,7 +35,7 @@ pub struct Absent {
 
 impl Link {
     /// Tries again to connect to a robot that did not answer the last command.
-    pub async fn open_link(&mut self, screen: &Screen) -> Result<(), Failure> {
+    pub async fn open_link(&mut self, screen: &Screen) -> Result<()> {
         let Self::Absent(absent) = self else { return Ok(()) };
         if !std::mem::replace(&mut absent.is_asked, true) {
             return Ok(());
@@ -48,7 +44,7 @@ impl Link {
         match Fleet::connect(&robot, access.clone(), screen).await? {
             Self::Absent(again) => absent.failure = again.failure,
             Self::Open(face, connection) => {
-                let driver = face.driver();
+                let driver = face.driver;
                 if !can_share(driver, &robot) {
                     *self = Self::Open(face, connection);
                     return Ok(());
@@ -68,9 +64,9 @@ impl Family for Fleet {
     type Link = Link;
     const STOP: &'static [&'static str] = &[];
 
-    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link> {
         let face = families::of(robot.family);
-        match face.driver().connect(robot, access.clone(), screen).await {
+        match (face.driver.connect)(robot, access.clone(), screen).await {
             Ok(connection) => Ok(Link::Open(face, connection)),
             // A robot that does not answer gets a line in the table as well.
             Err(failure) if failure.kind == Kind::NoAnswer => {
@@ -80,7 +76,7 @@ impl Family for Fleet {
         }
     }
 
-    async fn halt(link: &mut Link) -> Result<String, Failure> {
+    async fn halt(link: &mut Link) -> Result<String> {
         match link {
             Link::Open(_, connection) => connection.halt().await,
             Link::Absent(_) => Ok("nothing was sent".to_owned()),
@@ -95,18 +91,18 @@ impl Family for Fleet {
     }
 
     fn connection_effect(robot: &Robot, mode: ConnectMode) -> ConnectionEffect {
-        families::of(robot.family).driver().connection_effect(robot, mode)
+        (families::driver(robot).connection_effect)(robot, mode)
     }
 
     fn takes_one_client(robot: &Robot) -> bool {
-        families::of(robot.family).driver().takes_one_client(robot)
+        (families::driver(robot).takes_one_client)(robot)
     }
 
-    fn addresses(robot: &Robot) -> Result<Vec<target::Address>, Failure> {
-        families::of(robot.family).driver().addresses(robot)
+    fn addresses(robot: &Robot) -> Result<Vec<target::Address>> {
+        (families::driver(robot).addresses)(robot)
     }
 
-    async fn close(link: Link, screen: &Screen) -> Result<(), Failure> {
+    async fn close(link: Link, screen: &Screen) -> Result<()> {
         match link {
             Link::Open(_, connection) => connection.close(screen).await,
             Link::Absent(_) => Ok(()),
@@ -128,10 +124,10 @@ impl Command for Overview {
     const ID: &'static str = "status";
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
-    async fn run(&self, context: Context<'_, Fleet>) -> Result<OverviewReport, Failure> {
+    async fn run(&self, context: Context<'_, Fleet>) -> Result<OverviewReport> {
         let found = match context.link.open_link(context.screen).await {
             Ok(()) => match context.link {
-                Link::Open(face, connection) => face.overview(&mut **connection).await,
+                Link::Open(face, connection) => (face.overview)(&mut **connection).await,
                 Link::Absent(absent) => Err(absent.failure.clone()),
             },
             Err(failure) => Err(failure),
@@ -143,7 +139,7 @@ impl Command for Overview {
     }
 
     /// A missing answer is a state of the robot here, and not a failure.
-    fn without_answer(&self, robot: &Robot, failure: Failure) -> Result<OverviewReport, Failure> {
+    fn without_answer(&self, robot: &Robot, failure: Failure) -> Result<OverviewReport> {
         if failure.kind != Kind::NoAnswer {
             return Err(failure);
         }
@@ -184,7 +180,7 @@ fn count<'a>(envelopes: &(impl Iterator<Item = &'a Envelope> + Clone)) -> String
 }
 
 /// Overview of a robot, with the connections of an interactive session.
-pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<OverviewReport, Failure> {
+pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<OverviewReport> {
     let overview = Overview::default();
     let access = Access::reading(overview.connect_mode());
     let access = line.connect(robot, access, screen).await?;

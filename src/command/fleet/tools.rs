@@ -1,6 +1,5 @@
 //! `armctl decode FAMILY`, `explain FAMILY` and `sim FAMILY`.
 
-use std::fmt;
 use std::marker::PhantomData;
 
 use clap::{ArgMatches, Command, FromArgMatches, Subcommand};
@@ -10,7 +9,6 @@ use crate::command::fleet::cell::CellArguments;
 use armctl_frame::SchemaEntry;
 use armctl_frame::face::tool::{Tool, ToolKind, ToolTask};
 use armctl_frame::prelude::*;
-use armctl_frame::settings::target::Family;
 
 /// Arguments of `armctl decode FAMILY`.
 pub type Decode = FamilyTool<Decoding>;
@@ -64,9 +62,9 @@ struct Simulator {
 impl Simulators {
     fn all() -> Self {
         let simulators = FAMILIES.map(|face| {
-            let family = face.family().name();
+            let family = face.family.name();
             let start = format!("armctl sim {family}");
-            Simulator { family, controller: face.title(), start, target: face.simulator() }
+            Simulator { family, controller: face.title, start, target: face.simulator }
         });
         Self { simulators: simulators.into() }
     }
@@ -84,7 +82,7 @@ impl Report for Simulators {
 
 /// Schemas of the reports.
 pub fn schemas() -> Vec<SchemaEntry> {
-    let tools = ToolKind::ALL.into_iter().flat_map(|kind| FAMILIES.map(|face| face.tool(kind)));
+    let tools = ToolKind::ALL.into_iter().flat_map(|kind| FAMILIES.map(|face| (face.tool)(kind)));
     tools.flat_map(|tool| (tool.schemas)()).collect()
 }
 
@@ -119,18 +117,18 @@ impl Word for Simulating {
 /// Family and arguments that follow the command word.
 pub struct FamilyTool<W> {
     family: Family,
-    task: Box<dyn ToolTask>,
+    task: ToolTask,
     word: PhantomData<W>,
 }
 
 impl<W: Word> FamilyTool<W> {
     fn tool(family: Family) -> Tool {
-        families::of(family).tool(W::KIND)
+        (families::of(family).tool)(W::KIND)
     }
 
     /// Runs the command.
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
-        self.task.run(run).await
+        (self.task)(run).await
     }
 }
 
@@ -142,7 +140,7 @@ impl<W> fmt::Debug for FamilyTool<W> {
 
 impl<W: Word> Subcommand for FamilyTool<W> {
     fn augment_subcommands(command: Command) -> Command {
-        let words = FAMILIES.map(|face| (face.tool(W::KIND).augment)(Command::new(face.family().name())));
+        let words = FAMILIES.map(|face| ((face.tool)(W::KIND).augment)(Command::new(face.family.name())));
         command.subcommands(words)
     }
 

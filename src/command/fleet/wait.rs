@@ -1,14 +1,11 @@
 //! `armctl wait`: waits until robots of any family are in a state.
 
-use std::time::Duration;
-
 use super::common::line::{Reading, SharedLine};
 use super::status::Overview;
 use armctl_frame::condition::{Comparison, Condition};
 use armctl_frame::face::overview::OverviewReport;
 use armctl_frame::prelude::*;
 use armctl_frame::run::{Repeat, as_value};
-use armctl_frame::settings::duration;
 use armctl_frame::{AnyCommand, SchemaEntry};
 
 const DEFAULT_INTERVAL: Duration = Duration::from_millis(200);
@@ -34,7 +31,7 @@ impl Wait {
     ///
     /// # Errors
     /// If no family has a value with this name.
-    pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
+    pub fn command(&self) -> Result<Box<dyn AnyCommand>> {
         Ok(match self.item()? {
             Some(comparison) => Box::new(SharedLine::reading("wait", &NOUNS, comparison.name)?),
             None => Box::new(Overview::default()),
@@ -45,7 +42,7 @@ impl Wait {
     ///
     /// # Errors
     /// If the condition is not valid.
-    pub fn repeat(&self, given: &Repeat) -> Result<Repeat, Failure> {
+    pub fn repeat(&self, given: &Repeat) -> Result<Repeat> {
         let until = match self.item()? {
             Some(comparison) => Condition::item_of_noun(&self.condition, &comparison)?,
             None => Condition::new(&self.condition)?,
@@ -56,7 +53,7 @@ impl Wait {
     }
 
     /// Comparison of a signal or variable; `None` if the condition needs only the status.
-    fn item(&self) -> Result<Option<Comparison<'_>>, Failure> {
+    fn item(&self) -> Result<Option<Comparison<'_>>> {
         let keys = as_value(&OverviewReport::default())?;
         Ok(Comparison::parse(&self.condition).filter(|comparison| keys.get(comparison.name).is_none()))
     }

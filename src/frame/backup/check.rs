@@ -1,10 +1,5 @@
 //! `armctl backup --verify`: integrity check of the files of a backup.
 
-use std::path::Path;
-
-use serde_json::Value;
-
-use crate::Report;
 use crate::backup::manifest;
 use crate::backup::manifest::MANIFEST;
 use crate::prelude::basics::*;
@@ -35,7 +30,7 @@ struct Backup {
 
 impl Checked {
     /// The backup in a folder, or the backups in its subfolders, one per robot.
-    pub fn check_folder(folder: &Path) -> Result<Self, Failure> {
+    pub fn check_folder(folder: &Path) -> Result<Self> {
         let several = if folder.join(MANIFEST).exists() { Vec::new() } else { manifest::folders_in(folder) };
         // Without a backup, the read of the folder's manifest reports the error.
         let folders = if several.is_empty() { vec![folder.to_owned()] } else { several };
@@ -45,7 +40,7 @@ impl Checked {
 }
 
 impl Backup {
-    fn of(folder: &Path) -> Result<Self, Failure> {
+    fn of(folder: &Path) -> Result<Self> {
         let list = manifest::open_existing::<Value>(folder)?;
         let copies: Vec<_> = list.files.iter().filter_map(|entry| entry.copy.as_ref()).collect();
         Ok(Self {

@@ -1,23 +1,17 @@
 //! Comparison of two backups of a family, file by file.
 
 use std::io::Read as _;
-use std::path::{Path, PathBuf};
-
-use anyhow::Context as _;
 
 use super::job_date::{DATE_LINE, align_files};
 use super::tolerance::Tolerance;
-use crate::Report;
 use crate::backup::manifest::{Entry, Manifest, Saved};
 use crate::backup::text_diff::{Change, Hunk, MAX_TEXT, TextDifference, unified};
 use crate::backup::{Only, severity};
 use crate::items::ItemError;
-use crate::output::csv::RowsOf;
 use crate::output::escape;
 use crate::prelude::basics::*;
 use crate::robot::file::{FILES, FileItem};
 use armctl_controller::text::Encoding;
-use armctl_files as files;
 
 /// One side of a comparison.
 #[derive(Debug)]
@@ -122,7 +116,7 @@ const CONTROLLER: &str = "controller";
 
 impl Differences {
     /// Compares two sides.
-    pub fn of(old: &BackupSide, new: &BackupSide, only: &Only, manner: CompareOptions) -> Result<Self, Failure> {
+    pub fn of(old: &BackupSide, new: &BackupSide, only: &Only, manner: CompareOptions) -> Result<Self> {
         let (a, b) = (&old.manifest, &new.manifest);
         if a.family != b.family {
             return Err(Failure::usage(format!(
@@ -172,8 +166,8 @@ impl Differences {
     }
 }
 
-impl std::fmt::Display for SideReport {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for SideReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.folder {
             Some(folder) => f.write_str(folder),
             None => write!(f, "the controller of {}", self.robot),
@@ -204,7 +198,7 @@ fn key(entry: &Entry) -> String {
 }
 
 /// Difference of the controller data, if any.
-fn compare_controllers(old: &Manifest, new: &Manifest) -> Result<Option<Difference>, Failure> {
+fn compare_controllers(old: &Manifest, new: &Manifest) -> Result<Option<Difference>> {
     if old.controller == new.controller {
         return Ok(None);
     }
@@ -269,7 +263,7 @@ fn pair_files(
     entry: &Entry,
     partner: &Entry,
     manner: CompareOptions,
-) -> Result<Compared, Failure> {
+) -> Result<Compared> {
     let (ours, theirs) = (copy(old, entry)?, copy(new, partner)?);
     let file = |more: Compared| Compared { file: ours.file.clone(), ..more };
     if ours.sha256.eq_ignore_ascii_case(&theirs.sha256) {
@@ -300,7 +294,7 @@ fn pair_files(
 }
 
 /// Copy of an entry, unless it is missing or was changed since the backup.
-fn copy<'e>(side: &BackupSide, entry: &'e Entry) -> Result<&'e Saved, Failure> {
+fn copy<'e>(side: &BackupSide, entry: &'e Entry) -> Result<&'e Saved> {
     let copy = entry.copy.as_ref().ok_or_else(|| {
         let why = entry.error.as_ref().map_or("no reason recorded", |reason| &reason.message);
         Failure::new(Kind::ConditionNotMet, format!("{} does not contain this file: {why}", SideReport::new(side)))
@@ -310,7 +304,7 @@ fn copy<'e>(side: &BackupSide, entry: &'e Entry) -> Result<&'e Saved, Failure> {
     Ok(copy)
 }
 
-fn read(folder: &Path, copy: &Saved) -> Result<Vec<u8>, Failure> {
+fn read(folder: &Path, copy: &Saved) -> Result<Vec<u8>> {
     let path = folder.join(&copy.file);
     let place = || path.display().to_string();
     let file = files::open(&path).with_context(place)?;

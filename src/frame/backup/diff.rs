@@ -1,10 +1,6 @@
 //! Options of a comparison of two backups, or a backup and a controller. A controller is read into a temporary
 //! folder.
 
-use std::path::{Path, PathBuf};
-
-use anyhow::Context as _;
-
 use super::compare::{BackupSide, CompareOptions, Differences};
 use super::manifest;
 use super::tolerance::{Limit, Tolerance};
@@ -35,7 +31,7 @@ pub struct DiffOptions {
 
 impl DiffOptions {
     /// Folder to compare.
-    pub fn folder(&self) -> Result<&Path, Failure> {
+    pub fn folder(&self) -> Result<&Path> {
         self.old.as_deref().ok_or_else(|| {
             Failure::usage("no backup to compare")
                 .hint("type the folder of a backup, or two robots: `armctl diff ROBOT ROBOT`")
@@ -48,14 +44,14 @@ impl DiffOptions {
     }
 
     /// Compares two folders.
-    pub fn two_folders(&self) -> Result<Differences, Failure> {
+    pub fn two_folders(&self) -> Result<Differences> {
         let old = self.folder()?;
         let new = self.new.as_deref().unwrap_or(old);
         self.compare(&side(old.to_owned())?, &side(new.to_owned())?)
     }
 
     /// Compares two controllers that were read into folders.
-    pub fn two_controllers(&self, folders: [PathBuf; 2]) -> Result<Differences, Failure> {
+    pub fn two_controllers(&self, folders: [PathBuf; 2]) -> Result<Differences> {
         let read = |folder: PathBuf| {
             Ok::<_, Failure>(BackupSide { manifest: manifest::open_existing(&folder)?, folder, is_controller: true })
         };
@@ -73,8 +69,8 @@ impl DiffOptions {
         &self,
         old: PathBuf,
         robot: &Robot,
-        read: impl AsyncFnOnce(SaveOptions) -> Result<BackupReport, Failure>,
-    ) -> Result<Differences, Failure> {
+        read: impl AsyncFnOnce(SaveOptions) -> Result<BackupReport>,
+    ) -> Result<Differences> {
         let old = side(old)?;
         manifest::check_origin(&old.manifest, robot, true)?;
         let temporary = tempfile::tempdir().context("cannot create a temporary folder")?;
@@ -97,7 +93,7 @@ impl DiffOptions {
         self.compare(&old, &BackupSide { manifest, folder, is_controller: true })
     }
 
-    fn compare(&self, old: &BackupSide, new: &BackupSide) -> Result<Differences, Failure> {
+    fn compare(&self, old: &BackupSide, new: &BackupSide) -> Result<Differences> {
         let options =
             if self.exact { CompareOptions::EXACT } else { CompareOptions::usual(Tolerance::of(&self.tolerance)) };
         Differences::of(old, new, &Only(self.only.clone()), options)
@@ -122,6 +118,6 @@ impl DiffOptions {
     }
 }
 
-fn side(folder: PathBuf) -> Result<BackupSide, Failure> {
+fn side(folder: PathBuf) -> Result<BackupSide> {
     Ok(BackupSide { manifest: manifest::open_existing(&folder)?, folder, is_controller: false })
 }

@@ -1,9 +1,6 @@
 //! `backup`, `restore` and `diff` commands, for robots of any family and for each family.
 
 use std::marker::PhantomData;
-use std::path::{Path, PathBuf};
-
-use serde_json::Value;
 
 use super::arguments::{BackupOptions, RestoreOptions};
 use super::compare::Differences;
@@ -30,9 +27,9 @@ pub trait Backups: Family {
         Self::BACKUP_RISK
     }
     /// Makes a backup.
-    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport, Failure>;
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport>;
     /// Restores a backup.
-    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure>;
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport>;
 }
 
 /// Saves the data of a controller to a folder of files.
@@ -70,7 +67,7 @@ impl<F: Backups> Command for Backup<F> {
         F::backup_risk(robot)
     }
 
-    async fn run(&self, context: Context<'_, F>) -> Result<BackupReport, Failure> {
+    async fn run(&self, context: Context<'_, F>) -> Result<BackupReport> {
         let making = self.options.making(None);
         let folder = private_folder(&making.folder, &context.robot.name, context.several);
         F::back_up(context, SaveOptions { folder, ..making }).await
@@ -109,7 +106,7 @@ impl<F: Backups> Command for Restore<F> {
     const INTENT: &'static str = "overwrite data of the controller with the backup";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, F>) -> Result<RestoreReport, Failure> {
+    async fn run(&self, context: Context<'_, F>) -> Result<RestoreReport> {
         let restoring = self.options.restoring();
         let folder = place(&restoring.folder, context.robot, context.several);
         manifest::check_origin(&manifest::open_existing::<Value>(&folder)?, context.robot, restoring.force)?;
@@ -178,25 +175,22 @@ impl<F: Backups> Command for Diff<F> {
     type Family = F;
     type Report = Differences;
     const ID: &'static str = F::IDS[2];
+    const USES_FILES: bool = true;
     const RISK: Risk = F::BACKUP_RISK;
 
     fn risk_on(&self, robot: &Robot) -> Risk {
         F::backup_risk(robot)
     }
 
-    fn uses_files(&self) -> bool {
-        true
-    }
-
     fn takes_robot(&self) -> bool {
         self.options.new.is_none()
     }
 
-    fn run_alone(&self) -> Result<Differences, Failure> {
+    fn run_alone(&self) -> Result<Differences> {
         self.options.two_folders()
     }
 
-    async fn run(&self, context: Context<'_, F>) -> Result<Differences, Failure> {
+    async fn run(&self, context: Context<'_, F>) -> Result<Differences> {
         let robot = context.robot;
         let folder = place(self.options.folder()?, robot, context.several);
         self.options.with_controller(folder, robot, |making| F::back_up(context, making)).await

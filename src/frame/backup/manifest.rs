@@ -3,13 +3,11 @@
 use std::collections::HashSet;
 use std::fs;
 use std::io::{ErrorKind, Read as _};
-use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
 use jiff::Timestamp;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use serde_json::{Map, Value, json};
+use serde_json::Map;
 use sha2::{Digest as _, Sha256};
 
 use crate::local_names::{Target, is_plain_file_name};
@@ -17,9 +15,8 @@ use crate::output::escape;
 use crate::prelude::basics::*;
 use crate::settings::Origin;
 pub use crate::settings::target::MANIFEST;
-use crate::settings::target::{Family, MAX_MANIFEST};
+use crate::settings::target::MAX_MANIFEST;
 use armctl_controller::text::{hex, unhex};
-use armctl_files as files;
 
 /// Format name, for programs that find the folder.
 const FORMAT: &str = "armctl backup";
@@ -130,7 +127,7 @@ impl<C: About> Manifest<C> {
     }
 
     /// Writes the manifest to `folder` atomically.
-    pub fn write(&mut self, folder: &Path) -> Result<(), Failure> {
+    pub fn write(&mut self, folder: &Path) -> Result<()> {
         self.updated_at = Timestamp::now();
         let mut text = escape::json_pretty(self).map_err(|error| Failure::local(format!("{MANIFEST}: {error}")))?;
         text.push('\n');
@@ -214,7 +211,7 @@ fn inventory_settings(robot: &Robot) -> Map<String, Value> {
 }
 
 /// Reads the manifest in `folder`; `None` if there is none.
-pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
+pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>> {
     /// Common first fields of every manifest.
     #[derive(Deserialize)]
     struct Head {
@@ -254,7 +251,7 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
 }
 
 /// Reads the manifest in `folder`, which must exist.
-pub fn open_existing<C: About>(folder: &Path) -> Result<Manifest<C>, Failure> {
+pub fn open_existing<C: About>(folder: &Path) -> Result<Manifest<C>> {
     read(folder)?.ok_or_else(|| {
         let shown = folder.display();
         let failure = Failure::local(if folder.exists() {
@@ -291,7 +288,7 @@ pub fn folders_with(folder: &Path, files: &[&str]) -> Vec<PathBuf> {
 }
 
 /// Reads the existing backup in a target folder, if any. Other files must not be mixed with a backup.
-pub fn inspect_folder<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
+pub fn inspect_folder<C: About>(folder: &Path) -> Result<Option<Manifest<C>>> {
     // Leftovers of a killed backup.
     files::sweep(folder);
     let mut entries = match fs::read_dir(folder) {
@@ -319,7 +316,7 @@ pub fn find_earlier_backup<C: About>(
     scope: Option<&[String]>,
     resume: bool,
     force: bool,
-) -> Result<Option<Manifest<C>>, Failure> {
+) -> Result<Option<Manifest<C>>> {
     let Some(earlier) = inspect_folder::<Value>(folder)?.filter(|_| !force) else { return Ok(None) };
     let name = &earlier.robot;
     if !resume {
@@ -343,7 +340,7 @@ pub fn find_earlier_backup<C: About>(
 }
 
 /// Checks whether a backup may be written to this robot: to the same robot or to a simulator, unless `force` is set.
-pub fn check_origin(manifest: &Manifest, robot: &Robot, force: bool) -> Result<(), Failure> {
+pub fn check_origin(manifest: &Manifest, robot: &Robot, force: bool) -> Result<()> {
     let Manifest { family, robot: name, target, .. } = manifest;
     if *family != robot.family.name() {
         return Err(Failure::usage(format!(
@@ -389,7 +386,7 @@ impl From<&Failure> for Reason {
 
 impl Saved {
     /// Checks that the file in `folder` is unchanged since the backup.
-    pub fn check(&self, folder: &Path) -> Result<(), Failure> {
+    pub fn check(&self, folder: &Path) -> Result<()> {
         let path = folder.join(&self.file);
         let damaged = |why: String| {
             Err(Failure::local(format!("{}: {why}", path.display()))

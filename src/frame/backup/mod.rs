@@ -14,19 +14,11 @@ pub mod text_diff;
 pub mod tolerance;
 pub mod twin;
 
-use std::fmt;
-use std::path::{Path, PathBuf};
-
-use serde_json::{Value, json};
-
-use super::Report;
 use super::backup::manifest::MANIFEST;
 use super::robot::file::{FILES, FileItem, Files, NO_DIFFERENCE};
 use crate::items::ItemError;
-use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
 use crate::settings::inventory::matches_pattern;
-use armctl_controller::similar_word::nearest;
 
 /// Selection of files or parts by name patterns; an empty list selects all.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -54,7 +46,7 @@ impl Only {
     }
 
     /// Rejects patterns without a match, such as mistyped patterns.
-    pub fn check<S: AsRef<str>>(&self, names: &[S]) -> Result<(), Failure> {
+    pub fn check<S: AsRef<str>>(&self, names: &[S]) -> Result<()> {
         let unknown = self.0.iter().find(|pattern| !names.iter().any(|name| matches_pattern(pattern, name.as_ref())));
         let Some(pattern) = unknown else { return Ok(()) };
         let near = nearest(pattern, names.iter().map(AsRef::as_ref));

@@ -1,8 +1,5 @@
 //! Restore of the parts that are tables: comparison with the controller, question, and writes.
 
-use std::fmt;
-use std::path::Path;
-
 use super::manifest::LeftOut;
 use crate::Family;
 use crate::interrupt::interruptible;
@@ -26,7 +23,7 @@ pub async fn compare_all<'p, F: Family>(
     link: &mut F::Link,
     screen: &Screen,
     parts: impl ExactSizeIterator<Item = (&'p mut Table<F>, &'p mut FileItem)>,
-) -> Result<(), Failure> {
+) -> Result<()> {
     let mut read = screen.parts_progress("parts read", parts.len());
     let mut lost = None;
     for (table, result) in parts {
@@ -64,7 +61,7 @@ pub async fn write_all<'p, F: Family>(
 }
 
 /// Records the result of a part. Returns whether the next part can be tried.
-pub fn settle(result: &mut FileItem, outcome: Result<PartResult, Failure>) -> bool {
+pub fn settle(result: &mut FileItem, outcome: Result<PartResult>) -> bool {
     let PartResult { written, unchanged, left_out, failure } = match outcome {
         Ok(outcome) => outcome,
         Err(failure) => return result.fail(failure),

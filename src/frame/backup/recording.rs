@@ -4,18 +4,12 @@
 //! that differ from the poll before. A simulator replays these answers.
 
 use std::io::{BufRead as _, BufReader, Read as _};
-use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use anyhow::Context as _;
 use serde::Deserialize;
 
 use super::manifest::Manifest;
 use crate::prelude::basics::*;
-use crate::settings::duration;
-use crate::settings::target::Family;
 use armctl_controller::simulator::recording::{Answers, Recording, Replayable, Sample};
-use armctl_files as files;
 
 /// Name of the file.
 pub const FILE: &str = "recording.jsonl";
@@ -45,7 +39,7 @@ pub struct ReplayArguments {
 impl ReplayArguments {
     /// Start state that replays the recording, with a text about the recording. Without a recording, the start state
     /// stays the same.
-    pub fn apply<S: Replayable>(&self, start: S, family: Family) -> Result<(S, Option<String>), Failure> {
+    pub fn apply<S: Replayable>(&self, start: S, family: Family) -> Result<(S, Option<String>)> {
         let Some(path) = &self.replay else { return Ok((start, None)) };
         let recorded = Recorded::of_family(path, family)?;
         let note = recorded.note(path);
@@ -56,7 +50,7 @@ impl ReplayArguments {
 }
 
 /// Start state that replays a recording, if there is one, for the simulator of a URL.
-pub fn with_replay<S: Replayable>(start: S, path: Option<&Path>, family: Family) -> Result<S, Failure> {
+pub fn with_replay<S: Replayable>(start: S, path: Option<&Path>, family: Family) -> Result<S> {
     let Some(path) = path else { return Ok(start) };
     let recorded = Recorded::of_family(path, family)?;
     Ok(start.with_recording(Recording::new(recorded.samples, None)))
@@ -85,12 +79,12 @@ impl Head {
             version: VERSION,
             interval_ms: u64::try_from(interval.as_millis()).unwrap_or(u64::MAX),
             model: model.map(|model| model.name().to_owned()),
-            manifest: Manifest::new(robot, serde_json::Value::Null, Vec::new()),
+            manifest: Manifest::new(robot, Value::Null, Vec::new()),
         }
     }
 
     /// Reads the first line of a recording.
-    pub fn read(path: &Path) -> Result<Self, Failure> {
+    pub fn read(path: &Path) -> Result<Self> {
         Lines::open(path)?.head()
     }
 }
@@ -115,7 +109,7 @@ pub struct Recorded {
 
 impl Recorded {
     /// Reads a recording.
-    pub fn read(path: &Path) -> Result<Self, Failure> {
+    pub fn read(path: &Path) -> Result<Self> {
         let mut lines = Lines::open(path)?;
         let head = lines.head()?;
         let mut samples: Vec<Sample> = Vec::new();
@@ -143,7 +137,7 @@ impl Recorded {
     }
 
     /// Reads a recording of a family.
-    fn of_family(path: &Path, family: Family) -> Result<Self, Failure> {
+    fn of_family(path: &Path, family: Family) -> Result<Self> {
         let recorded = Self::read(path)?;
         let found = &recorded.head.manifest.family;
         if found != family.name() {
@@ -178,13 +172,13 @@ struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    fn open(path: &'a Path) -> Result<Self, Failure> {
+    fn open(path: &'a Path) -> Result<Self> {
         let file = files::open(path).with_context(|| path.display().to_string())?;
         Ok(Self { path, reader: BufReader::new(file), number: 0 })
     }
 
     /// Next line with its line end, which a torn line does not have.
-    fn next(&mut self) -> Result<Option<String>, Failure> {
+    fn next(&mut self) -> Result<Option<String>> {
         self.number += 1;
         let mut text = Vec::new();
         let mut limited = (&mut self.reader).take(MAX_LINE);
@@ -196,7 +190,7 @@ impl<'a> Lines<'a> {
         Ok((length > 0).then(|| String::from_utf8_lossy(&text).into_owned()))
     }
 
-    fn head(&mut self) -> Result<Head, Failure> {
+    fn head(&mut self) -> Result<Head> {
         let text = self.next()?.unwrap_or_default();
         match serde_json::from_str::<Head>(&text) {
             Ok(Head { version, .. }) if version > VERSION => {

@@ -1,10 +1,6 @@
 //! Backup procedure of all families. Complete parts are kept, each part has its own result, and the manifest always
 //! shows the progress. A family supplies the list of parts and the code that reads them.
 
-use std::path::{Path, PathBuf};
-use std::time::Duration;
-
-use serde_json::Value;
 use tokio::time::Instant;
 
 use super::manifest::{self, About, Entry, Hash, LeftOut, MANIFEST, Manifest, Reason, Saved};
@@ -60,7 +56,7 @@ impl SavedPart {
 
 impl<C: About> Task<C> {
     /// Reads the target folder. If the user gave no selection, an existing backup supplies the selection.
-    pub fn new(making: SaveOptions, robot: &Robot, several: bool) -> Result<Self, Failure> {
+    pub fn new(making: SaveOptions, robot: &Robot, several: bool) -> Result<Self> {
         let SaveOptions { folder, scope, resume, force } = making;
         let folder = private_folder(&folder, &robot.name, several);
         let earlier: Option<Manifest<C>> =
@@ -76,7 +72,7 @@ impl<C: About> Task<C> {
         (screen, robot): (&'a Screen, &Robot),
         controller: C,
         is_kept: impl Fn(&Manifest<C>, &Entry) -> bool,
-    ) -> Result<BackupWriter<'a, C>, Failure> {
+    ) -> Result<BackupWriter<'a, C>> {
         let folder = &self.folder;
         make_folder(folder)?;
         let mut list = Manifest::new(robot, controller, self.scope.clone());
@@ -92,10 +88,7 @@ impl<C: About> Task<C> {
 }
 
 /// Runs a backup until it ends or Ctrl-C; a failure reports what is saved.
-pub async fn interrupted_failure<T>(
-    folder: &Path,
-    work: impl Future<Output = Result<T, Failure>>,
-) -> Result<T, Failure> {
+pub async fn interrupted_failure<T>(folder: &Path, work: impl Future<Output = Result<T>>) -> Result<T> {
     // Ctrl-C ends the work here, before the caller handles it, so that the saved files are reported.
     let outcome = interruptible(work).await.and_then(|outcome| outcome);
     outcome.map_err(|failure| match manifest::read::<Value>(folder) {
@@ -137,11 +130,7 @@ impl<C: About> BackupWriter<'_, C> {
     }
 
     /// Reads a part into its file, unless the file exists. Returns whether the next part can be tried.
-    pub async fn part(
-        &mut self,
-        mut entry: Entry,
-        read: impl Future<Output = Result<SavedPart, Failure>>,
-    ) -> Result<bool, Failure> {
+    pub async fn part(&mut self, mut entry: Entry, read: impl Future<Output = Result<SavedPart>>) -> Result<bool> {
         let mut file = FileItem::pending(&entry.name);
         let unchanged = |known: &&Entry| known.name == entry.name && known.name_hex == entry.name_hex;
         if let Some(Entry { copy: Some(copy), left_out, .. }) = self.list.files.iter().find(unchanged) {
@@ -183,7 +172,7 @@ impl<C: About> BackupWriter<'_, C> {
     }
 
     /// Ends the backup. `rest` are the parts that were not read.
-    pub fn end(mut self, rest: impl IntoIterator<Item = FileItem>) -> Result<BackupReport, Failure> {
+    pub fn end(mut self, rest: impl IntoIterator<Item = FileItem>) -> Result<BackupReport> {
         self.is_closed = true;
         self.files.extend(rest);
         let files = std::mem::take(&mut self.files);
@@ -203,7 +192,7 @@ impl<C: About> Drop for BackupWriter<'_, C> {
 }
 
 /// Writes a text file to a folder atomically.
-fn write_text(folder: &Path, file: String, text: &str) -> Result<Saved, Failure> {
+fn write_text(folder: &Path, file: String, text: &str) -> Result<Saved> {
     let mut draft = Target::new(folder.join(&file), true)?.begin()?;
     draft.write(text.as_bytes())?;
     draft.commit()?;

@@ -1,6 +1,6 @@
 //! Line comparison of texts, as in `diff -u`.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use similar::{Algorithm, ChangeTag, capture_diff_slices_deadline, group_diff_ops};
 

@@ -4,11 +4,7 @@
 //! frames, so there is no second list of the data of a family.
 
 use std::any::Any;
-use std::path::Path;
 use std::sync::OnceLock;
-
-use futures_util::FutureExt as _;
-use serde_json::Value;
 
 use super::manifest::{self, Manifest};
 use super::parts::Table;
@@ -20,7 +16,7 @@ use crate::settings::target::{self, Target};
 use crate::{ConnectMode, Family};
 
 /// Makes the start state of a family's simulator from a backup.
-type Make = fn(target::Family, &Path) -> Result<Box<dyn Any>, Failure>;
+type Make = fn(target::Family, &Path) -> Result<Box<dyn Any>>;
 
 /// A link to a simulator needs the tables of a backup, and the tables need a link. This value is between them.
 static MAKE: OnceLock<Make> = OnceLock::new();
@@ -34,7 +30,7 @@ pub fn register(make: Make) {
 ///
 /// # Errors
 /// The folder contains no backup of the family, or a file that the simulator cannot use.
-pub fn start<S: 'static>(family: target::Family, folder: &Path) -> Result<S, Failure> {
+pub fn start<S: 'static>(family: target::Family, folder: &Path) -> Result<S> {
     let internal = || Failure::local(format!("internal error: {family} has no twins"));
     let start = MAKE.get().ok_or_else(internal)?(family, folder)?;
     start.downcast().map(|start| *start).map_err(|_| internal())
@@ -44,7 +40,7 @@ pub fn start<S: 'static>(family: target::Family, folder: &Path) -> Result<S, Fai
 ///
 /// # Errors
 /// A row that cannot be written.
-pub fn frames<F: Family>(tables: &mut [Table<F>]) -> Result<Vec<Value>, Failure> {
+pub fn frames<F: Family>(tables: &mut [Table<F>]) -> Result<Vec<Value>> {
     let family = F::FAMILY.ok_or_else(|| Failure::local("internal error: a twin needs a family"))?;
     let robot = Sources::default().at(&Target::simulator(), family)?;
     let access = Access { dry_run: true, ..Access::reading(ConnectMode::Control) };
@@ -63,7 +59,7 @@ pub fn frames<F: Family>(tables: &mut [Table<F>]) -> Result<Vec<Value>, Failure>
 ///
 /// # Errors
 /// The manifest cannot be read.
-pub fn note(folder: &Path, unknown: &str) -> Result<String, Failure> {
+pub fn note(folder: &Path, unknown: &str) -> Result<String> {
     let manifest: Manifest = manifest::open_existing(folder)?;
     let copies = manifest.files.iter().filter_map(|entry| entry.copy.as_ref());
     let changed: Vec<&str> = copies.filter(|copy| copy.check(folder).is_err()).map(|copy| &copy.file[..]).collect();

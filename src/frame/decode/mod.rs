@@ -5,14 +5,11 @@ pub mod capture;
 
 use std::io::{self, BufRead as _, Read as _};
 
-use anyhow::Context as _;
-
 use self::capture::{CaptureDecoder, Input, Selection};
-use super::{Report, SchemaEntry};
+use super::SchemaEntry;
 use crate::output::{Format, render};
 use crate::prelude::basics::*;
 use crate::run::{Run, RunError};
-use armctl_files as files;
 
 /// Arguments of `armctl decode FAMILY`: bytes to decode, or a capture file.
 pub trait Decode {
@@ -26,7 +23,7 @@ pub trait Decode {
     type Capture: CaptureDecoder;
 
     /// The capture, if given, and its decoder.
-    fn capture(&self) -> Result<Option<(Input<'_>, Self::Capture)>, Failure>;
+    fn capture(&self) -> Result<Option<(Input<'_>, Self::Capture)>>;
 
     /// Selection of messages in the file.
     fn selection(&self) -> &Selection;
@@ -37,7 +34,7 @@ pub trait Decode {
     }
 
     /// Decodes the given bytes.
-    fn decode(&self) -> Result<Self::Report, Failure>;
+    fn decode(&self) -> Result<Self::Report>;
 
     /// The lines on stdin, each with its problem as soon as it arrives; `None` if stdin is not read line by line.
     fn decode_stdin(&self) -> Option<impl Iterator<Item = LineReport<Self::Report>>> {
@@ -46,7 +43,7 @@ pub trait Decode {
 }
 
 /// Report about a line, and the problem of the line.
-pub type LineReport<R> = Result<(R, Option<String>), Failure>;
+pub type LineReport<R> = Result<(R, Option<String>)>;
 
 /// Decodes the arguments and prints the result.
 pub fn run<D: Decode>(arguments: &D, run: &Run) -> Result<(), RunError> {
@@ -94,7 +91,7 @@ pub fn schemas<D: Decode>() -> [SchemaEntry; 2] {
 }
 
 /// Lines on stdin, as they arrive. A line that is much too long is several lines.
-pub fn stdin_lines() -> impl Iterator<Item = Result<String, Failure>> {
+pub fn stdin_lines() -> impl Iterator<Item = Result<String>> {
     const MAX_LINE_SIZE: u64 = 64 << 10;
 
     let mut input = io::stdin().lock();
@@ -109,12 +106,12 @@ pub fn stdin_lines() -> impl Iterator<Item = Result<String, Failure>> {
 }
 
 /// Text on stdin; invalid bytes are replaced and then reported as invalid.
-pub fn stdin() -> Result<String, Failure> {
+pub fn stdin() -> Result<String> {
     Ok(String::from_utf8_lossy(&stdin_bytes()?).into_owned())
 }
 
 /// Bytes on stdin.
-pub fn stdin_bytes() -> Result<Vec<u8>, Failure> {
+pub fn stdin_bytes() -> Result<Vec<u8>> {
     /// Maximum size. It is enough for thousands of frames.
     const MAX_INPUT_SIZE: u64 = 16 << 20;
 

@@ -1,18 +1,13 @@
 //! `armctl explain FAMILY CODE`: meaning of a code, and its occurrences on selected robots.
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-
 use super::registration::Declaration;
 use super::shared_commands::default_arguments;
-use super::tool::ToolTask;
 use crate::confirmation::Confirmer;
-use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
 use crate::robot::alarm::{Alarm, AlarmEntry, Alarms, ExtraColumns, Row};
 use crate::run::{Run, RunError};
 use crate::settings::alarms::{self, Explanation, Origin};
-use crate::{Access, Command, ConnectMode, ConnectionEffect, Context, Report};
+use crate::{Access, Command, ConnectMode, ConnectionEffect, Context};
 
 /// A parsed code of a family.
 pub trait Explain {
@@ -22,7 +17,7 @@ pub trait Explain {
     const ID: &'static str;
 
     /// Meaning of the code without reading a robot; `alarms` has the site's texts.
-    fn explain(&self, alarms: &alarms::Alarms, origin: Origin<'_>) -> Result<Self::Report, Failure>;
+    fn explain(&self, alarms: &alarms::Alarms, origin: Origin<'_>) -> Result<Self::Report>;
 
     /// The alarm in the notation of controllers; `None` if the code is not an alarm.
     fn alarm(&self) -> Option<String>;
@@ -167,28 +162,21 @@ impl RobotOccurrences {
     }
 }
 
-/// Parsed arguments of `explain FAMILY`.
-pub(super) struct Explaining<F: Declaration>(pub F::Explain);
-
-impl<F: Declaration> ToolTask for Explaining<F> {
-    fn run(self: Box<Self>, run: &Run) -> LocalBoxFuture<'_, Result<(), RunError>> {
-        async move {
-            let (id, sources) = (<F::Explain as Explain>::ID, &run.sources);
-            let robots = if sources.selection.has_flags() { sources.robots(Some(F::NAME))? } else { Vec::new() };
-            let origin = if let [robot] = &robots[..] { Origin::of(robot) } else { Origin::any(F::NAME) };
-            let known = self.0.explain(&sources.alarms(), origin)?;
-            let mut told = Vec::with_capacity(robots.len());
-            for robot in &robots {
-                let (alarms, errors) = match self.0.alarm() {
-                    Some(alarm) => recall::<F>(run, robot, &alarm).await,
-                    None => (Vec::new(), vec!["not read: the code is not an alarm number".to_owned()]),
-                };
-                told.push(RobotOccurrences { robot: robot.name.clone(), alarms, errors });
-            }
-            run.local(id, &CodeExplanation { known, robots: told })
-        }
-        .boxed_local()
+/// Runs `explain FAMILY`.
+pub(super) async fn explain<F: Declaration>(code: F::Explain, run: &Run) -> Result<(), RunError> {
+    let (id, sources) = (<F::Explain as Explain>::ID, &run.sources);
+    let robots = if sources.selection.has_flags() { sources.robots(Some(F::NAME))? } else { Vec::new() };
+    let origin = if let [robot] = &robots[..] { Origin::of(robot) } else { Origin::any(F::NAME) };
+    let known = code.explain(&sources.alarms(), origin)?;
+    let mut told = Vec::with_capacity(robots.len());
+    for robot in &robots {
+        let (alarms, errors) = match code.alarm() {
+            Some(alarm) => recall::<F>(run, robot, &alarm).await,
+            None => (Vec::new(), vec!["not read: the code is not an alarm number".to_owned()]),
+        };
+        told.push(RobotOccurrences { robot: robot.name.clone(), alarms, errors });
     }
+    run.local(id, &CodeExplanation { known, robots: told })
 }
 
 /// Occurrences of an alarm on a controller, active and past, and the lists that were not read.

@@ -1,11 +1,8 @@
 //! Layers of `armctl robots check`, from the name of a robot to its alarms.
 
-use std::path::Path;
-
 use super::overview::LeftOver;
 use crate::failure::pasteable;
 use crate::prelude::basics::*;
-use armctl_files as files;
 
 /// One layer.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
@@ -160,9 +157,7 @@ pub fn first_failed(layers: &[Layer]) -> Option<(&'static str, &str)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::failure::Kind;
     use crate::output::render;
-    use crate::output::view::View;
 
     #[test]
     fn skips_layers_after_a_failure() {

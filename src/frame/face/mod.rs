@@ -13,131 +13,110 @@ pub mod tool;
 
 use std::any::Any;
 use std::ffi::OsString;
-use std::path::Path;
 
 use clap::ArgMatches;
-use futures_util::future::LocalBoxFuture;
 
 use self::family_command::FamilyLine;
-use self::layers::Layer;
-use self::overview::OverviewReport;
-use self::sample::{Detail, Sample, Traffic};
+pub use self::layers::Layer;
+pub use self::overview::OverviewReport;
+pub use self::registration::Declaration;
+pub use self::sample::{Detail, Sample, Traffic};
 use self::shared_commands::SharedVerb;
-use self::teach_panel::Panel;
+pub use self::teach_panel::Panel;
 use self::tool::{Tool, ToolKind};
 use super::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
 use super::robot::alarm::Alarm;
 use super::serve::NamedServer;
 use crate::prelude::basics::*;
-use crate::settings::target::Family;
 use crate::{Access, AnyCommand, AnyContext, Connection, Driver, Outcome, SchemaEntry};
 use armctl_transport::session::host::Guard;
 use armctl_transport::session::host::shared_link::SharedLink;
 
 /// Interface of a family for the rest of the program; [`registration`] derives it from the declaration.
-pub trait Face: Sync {
+pub struct Face {
     /// Family.
-    fn family(&self) -> Family;
+    pub family: Family,
     /// Manufacturers and models, for completion.
-    fn title(&self) -> &'static str;
+    pub title: &'static str,
     /// Prefixes of the family's target URLs, with the text that can follow each prefix.
-    fn urls(&self) -> Vec<(String, &'static str)>;
+    pub urls: fn() -> Vec<(String, &'static str)>,
     /// Codes that `explain` supports, with their names.
-    fn codes(&self) -> Vec<(String, String)>;
+    pub codes: fn() -> Vec<(String, String)>,
     /// Whether `explain` supports a code. For an unknown code: whether it has the form of a code of this family.
-    fn explains(&self, code: &str) -> bool;
+    pub explains: fn(code: &str) -> bool,
     /// Help topic `NAME-setup`: summary and text.
-    fn setup(&self) -> (&'static str, &'static str);
+    pub setup: (&'static str, &'static str),
     /// Additional help topics: name, summary and text.
-    fn topics(&self) -> Vec<(&'static str, &'static str, String)>;
+    pub topics: fn() -> Vec<(&'static str, &'static str, String)>,
     /// URL of the simulator that `sim` starts without arguments.
-    fn simulator(&self) -> &'static str;
+    pub simulator: &'static str,
     /// Nouns whose `list` has values that a backup does not contain.
-    fn unsaved(&self) -> &'static [&'static str];
+    pub unsaved: &'static [&'static str],
     /// Example of a simulator start state.
-    fn start_state(&self) -> &'static str;
+    pub start_state: &'static str,
 
     /// Command of the family with all subcommands and arguments.
-    fn augment(&self, command: clap::Command) -> clap::Command;
+    pub augment: fn(clap::Command) -> clap::Command,
     /// Command of the family with only the named subcommands.
-    fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command;
+    pub lay_out: fn(clap::Command, &IsNamed<'_>) -> clap::Command,
     /// Parses the arguments after the name of the family.
-    fn read(&self, matches: &mut ArgMatches) -> Result<FamilyLine, clap::Error>;
+    pub read: fn(&mut ArgMatches) -> Result<FamilyLine, clap::Error>,
     /// Schemas of all reports of the family.
-    fn schemas(&self) -> Vec<SchemaEntry>;
+    pub schemas: fn() -> Vec<SchemaEntry>,
 
     /// Serves a simulator with these arguments of `armctl sim FAMILY`.
-    fn serve(&self, name: String, arguments: Vec<OsString>) -> LocalBoxFuture<'static, Result<NamedServer, Failure>>;
+    pub serve: fn(name: String, arguments: Vec<OsString>) -> Work<'static, NamedServer>,
     /// Start state of the family's simulator with the data of a backup.
-    fn twin(&self, folder: &Path) -> Result<Box<dyn Any>, Failure>;
+    pub twin: fn(folder: &Path) -> Result<Box<dyn Any>>,
 
     /// Dissector of the protocol for Wireshark, in Lua, without the functions that all families use.
-    fn dissector(&self) -> String;
+    pub dissector: fn() -> String,
 
     /// Tool of the family of this kind.
-    fn tool(&self, kind: ToolKind) -> Tool;
+    pub tool: fn(ToolKind) -> Tool,
 
     /// Driver of the family's robots.
-    fn driver(&self) -> &'static dyn Driver;
+    pub driver: &'static Driver,
     /// Summary for `status`.
-    fn overview<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<OverviewReport, Failure>>;
+    pub overview: for<'a> fn(&'a mut dyn Connection) -> Work<'a, OverviewReport>,
     /// Active alarms, for `alarm list`.
-    fn alarms<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<Vec<Alarm>, Failure>>;
+    pub alarms: for<'a> fn(&'a mut dyn Connection) -> Work<'a, Vec<Alarm>>,
     /// Command of the family for a shared verb.
-    fn shared(&self, verb: SharedVerb) -> Box<dyn AnyCommand>;
+    pub shared: fn(SharedVerb) -> Box<dyn AnyCommand>,
     /// Keys of `armctl teach`.
-    fn panel(&self) -> Panel;
+    pub panel: Panel,
     /// Layers of `robots check`.
-    fn check<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Vec<Layer>, Failure>>;
+    pub check: for<'a> fn(&'a Robot, Access, &'a Screen) -> Work<'a, Vec<Layer>>,
     /// Opens a connection for repeated reads.
-    fn watch<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Box<dyn Watch>, Failure>>;
+    pub watch: for<'a> fn(&'a Robot, Access, &'a Screen) -> Work<'a, Box<dyn Watch>>,
 
     /// Opens a link for a session.
-    fn open_session_link<'a>(
-        &self,
-        robot: &'a Robot,
-        access: &'a Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>>;
-    /// Words of the family's stop command, after the name of the family.
-    fn stop(&self) -> &'static [&'static str];
+    pub open_session_link: for<'a> fn(&'a Robot, &'a Access, &'a Screen) -> Work<'a, HeldLink>,
     /// Filter of the requests that may reach a read-only robot through a session.
-    fn guard(&self) -> Guard;
+    pub guard: Guard,
     /// Whether a session records the traffic; otherwise each command records its own traffic.
-    fn session_records(&self) -> bool;
+    pub session_records: bool,
     /// Whether an open session commands the controller. A read-only robot does not allow such a session.
-    fn session_commands(&self) -> bool;
+    pub session_commands: bool,
 
     /// Risk of reading all data of a controller.
-    fn backup_risk(&self, robot: &Robot) -> Risk;
+    pub backup_risk: fn(&Robot) -> Risk,
     /// Makes a backup.
-    fn back_up<'a>(
-        &self,
-        context: AnyContext<'a>,
-        making: SaveOptions,
-    ) -> LocalBoxFuture<'a, Result<BackupReport, Failure>>;
+    pub back_up: for<'a> fn(AnyContext<'a>, SaveOptions) -> Work<'a, BackupReport>,
     /// Restores a backup.
-    fn restore<'a>(
-        &self,
-        context: AnyContext<'a>,
-        restoring: &'a RestoreSelection,
-    ) -> LocalBoxFuture<'a, Result<RestoreReport, Failure>>;
+    pub restore: for<'a> fn(AnyContext<'a>, &'a RestoreSelection) -> Work<'a, RestoreReport>,
 }
+
+/// Whether a command line contains the name of a subcommand.
+pub type IsNamed<'a> = dyn Fn(&str) -> bool + 'a;
+
+/// Work of a family that can fail.
+pub type Work<'a, T> = LocalBoxFuture<'a, Result<T>>;
 
 /// Repeated reads of a robot, for the poller.
 pub trait Watch {
     /// Reads once.
-    fn look(&mut self, detail: Detail) -> LocalBoxFuture<'_, Result<Sample, Failure>>;
+    fn look(&mut self, detail: Detail) -> Work<'_, Sample>;
     /// Runs a command of the family on the same connection. Only reads are sent.
     fn ask<'a>(
         &'a mut self,
@@ -148,7 +127,7 @@ pub trait Watch {
     /// Traffic counted on the connection so far.
     fn traffic(&mut self) -> Traffic;
     /// Closes the connection.
-    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>>;
+    fn close(self: Box<Self>, screen: &Screen) -> Work<'_, ()>;
 }
 
 /// A link for a session.
@@ -156,7 +135,7 @@ pub struct HeldLink {
     /// The link.
     pub held: SharedLink,
     /// Action after the link is closed: the end of the trace.
-    pub finish: Option<Box<dyn FnOnce() -> Result<(), Failure>>>,
+    pub finish: Option<Box<dyn FnOnce() -> Result<()>>>,
 }
 
 impl From<SharedLink> for HeldLink {

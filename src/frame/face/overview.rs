@@ -1,6 +1,5 @@
 //! Summary of a robot for `armctl status`.
 
-use crate::Report;
 use crate::prelude::basics::*;
 use crate::robot::state::State;
 

@@ -1,25 +1,19 @@
-//! Declaration of a family in its own types. [`Registered`] converts it to the [`Face`] for the rest of the program.
+//! Declaration of a family in its own types. [`Face::of`] converts it to the [`Face`] for the rest of the program.
 
-use std::any::Any;
 use std::ffi::OsString;
-use std::marker::PhantomData;
-use std::path::Path;
 
 use clap::{ArgMatches, FromArgMatches as _, Subcommand};
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 
 use super::explain::{Explain, RecordedAlarm};
 use super::family_command::{self, FamilyLine};
 use super::layers::Layer;
 use super::overview::OverviewReport;
 use super::sample::{Detail, Sample, Traffic};
-use super::shared_commands::{self, CommonReport, SharedVerb};
+use super::shared_commands::{self, CommonReport};
 use super::teach_panel::Panel;
 use super::tool::{Tool, ToolKind};
-use super::{Face, HeldLink, Watch};
+use super::{Face, HeldLink, Watch, Work};
 use crate::backup::family_backup::Backups;
-use crate::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
 use crate::confirmation::Confirmer;
 use crate::connection;
 use crate::decode::Decode;
@@ -27,13 +21,11 @@ use crate::prelude::basics::*;
 use crate::robot::alarm::Alarm;
 use crate::serve::{NamedServer, Serve, Started};
 use crate::settings::alarms::{Alarms, Origin};
-use crate::settings::target;
-use crate::{Access, AnyCommand, AnyContext, Command, CommandSet, Driver, FamilyArguments, Outcome, SchemaEntry};
+use crate::{Access, AnyCommand, AnyContext, Command, CommandSet, FamilyArguments, Outcome};
 use armctl_controller::simulator::recording::Replayable;
 use armctl_transport::session::host::Guard;
 
 /// A family, declared in its `face.rs`.
-#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Declaration: Backups {
     /// Commands after the name of the family.
     type Commands: CommandSet + Subcommand;
@@ -59,7 +51,7 @@ pub trait Declaration: Backups {
     type Poller: Poller<Family = Self>;
 
     /// Family.
-    const NAME: target::Family;
+    const NAME: Family;
     /// See [`Face::title`].
     const TITLE: &'static str;
     /// Help text of the family's command.
@@ -80,15 +72,25 @@ pub trait Declaration: Backups {
     const SESSION_RECORDS: bool = false;
     /// See [`Face::session_commands`].
     const SESSION_COMMANDS: bool = false;
+    /// See [`Face::dissector`].
+    const DISSECTOR: fn() -> String;
+    /// Start state of the simulator with the data of a backup.
+    const TWIN: fn(&Path) -> Result<Self::Start>;
+    /// Active alarms, the latest first, as far as they can be read.
+    const ALARMS: fn(&mut Self::Link) -> Work<'_, Vec<Alarm>>;
+    /// Traffic counted on a link so far.
+    const TRAFFIC: fn(&Self::Link) -> Traffic;
+    /// Summary for `status`.
+    const OVERVIEW: fn(&mut Self::Link) -> Work<'_, OverviewReport>;
+    /// Layers of `robots check`.
+    const CHECK: for<'a> fn(&'a Robot, Access, &'a Screen) -> Work<'a, Vec<Layer>>;
+    /// Opens a link for a session.
+    const OPEN_SESSION_LINK: for<'a> fn(&'a Robot, &'a Access, &'a Screen) -> Work<'a, HeldLink>;
 
     /// See [`Face::urls`].
     fn urls() -> Vec<(String, &'static str)>;
     /// See [`Face::codes`].
     fn codes() -> Vec<(String, String)>;
-    /// See [`Face::dissector`].
-    fn dissector() -> String;
-    /// Start state of the simulator with the data of a backup.
-    fn twin(folder: &Path) -> Result<Self::Start, Failure>;
     /// See [`Face::topics`].
     fn topics() -> Vec<(&'static str, &'static str, String)> {
         Vec::new()
@@ -104,16 +106,6 @@ pub trait Declaration: Backups {
     }
     /// Stop command, equivalent to the words of [`STOP`](connection::Family::STOP).
     fn stop_command() -> Self::Stop;
-    /// Active alarms, the latest first, as far as they can be read.
-    async fn alarms(link: &mut Self::Link) -> Result<Vec<Alarm>, Failure>;
-    /// Traffic counted on a link so far.
-    fn traffic(link: &Self::Link) -> Traffic;
-    /// Summary for `status`.
-    async fn overview(link: &mut Self::Link) -> Result<OverviewReport, Failure>;
-    /// Layers of `robots check`.
-    async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure>;
-    /// Opens a link for a session.
-    async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure>;
 }
 
 /// Poller that reads a robot repeatedly.
@@ -123,202 +115,83 @@ pub trait Poller: Sized + 'static {
     type Family: Declaration;
 
     /// Connects.
-    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure>;
+    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self>;
     /// Reads once.
-    async fn look(&mut self, detail: Detail) -> Result<Sample, Failure>;
+    async fn look(&mut self, detail: Detail) -> Result<Sample>;
     /// Connection, for a read-only command.
     fn link(&mut self) -> &mut <Self::Family as connection::Family>::Link;
     /// Closes the connection.
-    async fn close(self, screen: &Screen) -> Result<(), Failure>;
+    async fn close(self, screen: &Screen) -> Result<()>;
 }
 
-/// [`Face`] of a declared family.
-pub struct Registered<F>(PhantomData<fn() -> F>);
-
-impl<F> Registered<F> {
-    /// The only value.
-    pub const FACE: Self = Self(PhantomData);
+impl Face {
+    /// Interface of a declared family.
+    pub const fn of<F: Declaration>() -> Self {
+        Self {
+            family: F::NAME,
+            title: F::TITLE,
+            urls: F::urls,
+            codes: F::codes,
+            explains: explains::<F>,
+            setup: F::SETUP,
+            topics: F::topics,
+            simulator: F::Serve::TARGET,
+            unsaved: F::UNSAVED,
+            start_state: F::START_STATE,
+            augment: |command| {
+                family_command::augment::<F::Commands>(F::arguments(command), F::ABOUT).after_help(F::AFTER_HELP)
+            },
+            lay_out: |command, is_named| F::Commands::lay_out(F::arguments(command), is_named),
+            read: |matches| {
+                let own = F::read_arguments(matches)?;
+                Ok(FamilyLine { arguments: own, command: family_command::read::<F::Commands>(matches)? })
+            },
+            schemas: F::Commands::schemas,
+            serve: |name, arguments| serve::<F::Serve>(name, arguments).boxed_local(),
+            twin: |folder| Ok(Box::new((F::TWIN)(folder)?)),
+            dissector: F::DISSECTOR,
+            tool: |kind| match kind {
+                ToolKind::Decode => Tool::decode::<F::Decode>(),
+                ToolKind::Explain => Tool::explain::<F>(),
+                ToolKind::Simulate => Tool::simulate::<F::Serve>(),
+            },
+            driver: connection::driver::<F>(),
+            overview: |connection| async move { (F::OVERVIEW)(connection::link::<F>(connection)?).await }.boxed_local(),
+            alarms: |connection| async move { (F::ALARMS)(connection::link::<F>(connection)?).await }.boxed_local(),
+            shared: shared_commands::command::<F>,
+            panel: F::PANEL,
+            check: F::CHECK,
+            watch: |robot, access, screen| {
+                let poller = F::Poller::open(robot, access, screen);
+                async move { Ok(Box::new(poller.await?) as Box<dyn Watch>) }.boxed_local()
+            },
+            open_session_link: F::OPEN_SESSION_LINK,
+            guard: F::GUARD,
+            session_records: F::SESSION_RECORDS,
+            session_commands: F::SESSION_COMMANDS,
+            backup_risk: F::backup_risk,
+            back_up: |context, making| async move { F::back_up(context.of()?, making).await }.boxed_local(),
+            restore: |context, restoring| async move { F::restore(context.of()?, restoring).await }.boxed_local(),
+        }
+    }
 }
 
-impl<F: Declaration> Face for Registered<F> {
-    fn family(&self) -> target::Family {
-        F::NAME
-    }
+fn explains<F: Declaration>(code: &str) -> bool {
+    let command = F::Explain::augment_args(clap::Command::new("explain").no_binary_name(true));
+    let parsed = command.try_get_matches_from([code]).and_then(|matches| F::Explain::from_arg_matches(&matches));
+    parsed.is_ok_and(|explain| explain.explain(&Alarms::default(), Origin::any(F::NAME)).is_ok())
+}
 
-    fn title(&self) -> &'static str {
-        F::TITLE
-    }
-
-    fn urls(&self) -> Vec<(String, &'static str)> {
-        F::urls()
-    }
-
-    fn codes(&self) -> Vec<(String, String)> {
-        F::codes()
-    }
-
-    fn explains(&self, code: &str) -> bool {
-        let command = F::Explain::augment_args(clap::Command::new("explain").no_binary_name(true));
-        let parsed = command.try_get_matches_from([code]).and_then(|matches| F::Explain::from_arg_matches(&matches));
-        parsed.is_ok_and(|explain| explain.explain(&Alarms::default(), Origin::any(F::NAME)).is_ok())
-    }
-
-    fn setup(&self) -> (&'static str, &'static str) {
-        F::SETUP
-    }
-
-    fn topics(&self) -> Vec<(&'static str, &'static str, String)> {
-        F::topics()
-    }
-
-    fn simulator(&self) -> &'static str {
-        F::Serve::TARGET
-    }
-
-    fn unsaved(&self) -> &'static [&'static str] {
-        F::UNSAVED
-    }
-
-    fn start_state(&self) -> &'static str {
-        F::START_STATE
-    }
-
-    fn augment(&self, command: clap::Command) -> clap::Command {
-        family_command::augment::<F::Commands>(F::arguments(command), F::ABOUT).after_help(F::AFTER_HELP)
-    }
-
-    fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command {
-        F::Commands::lay_out(F::arguments(command), is_named)
-    }
-
-    fn read(&self, matches: &mut ArgMatches) -> Result<FamilyLine, clap::Error> {
-        let own = F::read_arguments(matches)?;
-        Ok(FamilyLine { arguments: own, command: family_command::read::<F::Commands>(matches)? })
-    }
-
-    fn schemas(&self) -> Vec<SchemaEntry> {
-        F::Commands::schemas()
-    }
-
-    fn serve(&self, name: String, arguments: Vec<OsString>) -> LocalBoxFuture<'static, Result<NamedServer, Failure>> {
-        async move {
-            let command = F::Serve::augment_args(clap::Command::new("sim").no_binary_name(true));
-            let parsed = command.try_get_matches_from(arguments).and_then(|found| F::Serve::from_arg_matches(&found));
-            let serve = parsed.map_err(|error| Failure::local(format!("internal error: {error}")))?;
-            let Started { target, server, replay, .. } = serve.start().await?;
-            Ok(NamedServer { name, target, server: Box::new(server), replay })
-        }
-        .boxed_local()
-    }
-
-    fn twin(&self, folder: &Path) -> Result<Box<dyn Any>, Failure> {
-        Ok(Box::new(F::twin(folder)?))
-    }
-
-    fn dissector(&self) -> String {
-        F::dissector()
-    }
-
-    fn tool(&self, kind: ToolKind) -> Tool {
-        match kind {
-            ToolKind::Decode => Tool::decode::<F::Decode>(),
-            ToolKind::Explain => Tool::explain::<F>(),
-            ToolKind::Simulate => Tool::simulate::<F::Serve>(),
-        }
-    }
-
-    fn driver(&self) -> &'static dyn Driver {
-        connection::driver::<F>()
-    }
-
-    fn overview<'a>(
-        &self,
-        connection: &'a mut dyn connection::Connection,
-    ) -> LocalBoxFuture<'a, Result<OverviewReport, Failure>> {
-        async move { F::overview(connection::link::<F>(connection)?).await }.boxed_local()
-    }
-
-    fn alarms<'a>(
-        &self,
-        connection: &'a mut dyn connection::Connection,
-    ) -> LocalBoxFuture<'a, Result<Vec<Alarm>, Failure>> {
-        async move { F::alarms(connection::link::<F>(connection)?).await }.boxed_local()
-    }
-
-    fn shared(&self, verb: SharedVerb) -> Box<dyn AnyCommand> {
-        shared_commands::command::<F>(verb)
-    }
-
-    fn check<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Vec<Layer>, Failure>> {
-        F::check(robot, access, screen).boxed_local()
-    }
-
-    fn watch<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Box<dyn Watch>, Failure>> {
-        async move { Ok(Box::new(F::Poller::open(robot, access, screen).await?) as Box<dyn Watch>) }.boxed_local()
-    }
-
-    fn open_session_link<'a>(
-        &self,
-        robot: &'a Robot,
-        access: &'a Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>> {
-        F::open_session_link(robot, access, screen).boxed_local()
-    }
-
-    fn panel(&self) -> Panel {
-        F::PANEL
-    }
-
-    fn stop(&self) -> &'static [&'static str] {
-        F::STOP
-    }
-
-    fn guard(&self) -> Guard {
-        F::GUARD
-    }
-
-    fn session_records(&self) -> bool {
-        F::SESSION_RECORDS
-    }
-
-    fn session_commands(&self) -> bool {
-        F::SESSION_COMMANDS
-    }
-
-    fn backup_risk(&self, robot: &Robot) -> Risk {
-        F::backup_risk(robot)
-    }
-
-    fn back_up<'a>(
-        &self,
-        context: AnyContext<'a>,
-        making: SaveOptions,
-    ) -> LocalBoxFuture<'a, Result<BackupReport, Failure>> {
-        async move { F::back_up(context.of()?, making).await }.boxed_local()
-    }
-
-    fn restore<'a>(
-        &self,
-        context: AnyContext<'a>,
-        restoring: &'a RestoreSelection,
-    ) -> LocalBoxFuture<'a, Result<RestoreReport, Failure>> {
-        async move { F::restore(context.of()?, restoring).await }.boxed_local()
-    }
+async fn serve<S: Serve + Args + 'static>(name: String, arguments: Vec<OsString>) -> Result<NamedServer> {
+    let command = S::augment_args(clap::Command::new("sim").no_binary_name(true));
+    let parsed = command.try_get_matches_from(arguments).and_then(|found| S::from_arg_matches(&found));
+    let serve = parsed.map_err(|error| Failure::local(format!("internal error: {error}")))?;
+    let Started { target, server, replay, .. } = serve.start().await?;
+    Ok(NamedServer { name, target, server: Box::new(server), replay })
 }
 
 impl<E: Poller> Watch for E {
-    fn look(&mut self, detail: Detail) -> LocalBoxFuture<'_, Result<Sample, Failure>> {
+    fn look(&mut self, detail: Detail) -> Work<'_, Sample> {
         Poller::look(self, detail).boxed_local()
     }
 
@@ -330,17 +203,17 @@ impl<E: Poller> Watch for E {
     ) -> LocalBoxFuture<'a, Outcome> {
         async move {
             let confirmer = Confirmer::reading(screen, robot);
-            let mut borrowed = connection::Borrowed::<E::Family>(self.link());
+            let mut borrowed = connection::Linked::<E::Family>::Borrowed(self.link());
             command.run(AnyContext { robot, connection: &mut borrowed, screen, several: false, confirmer }).await
         }
         .boxed_local()
     }
 
     fn traffic(&mut self) -> Traffic {
-        E::Family::traffic(self.link())
+        (E::Family::TRAFFIC)(self.link())
     }
 
-    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
+    fn close(self: Box<Self>, screen: &Screen) -> Work<'_, ()> {
         Poller::close(*self, screen).boxed_local()
     }
 }

@@ -1,18 +1,16 @@
 //! Commands that every family has: `armctl alarm history`, `alarm reset`, `stop`. Each robot gets the command of its
 //! family, and the reports have the common keys.
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 use serde::Serializer;
 
 use super::registration::Declaration;
 use crate::AnyContext;
 use crate::connection;
 use crate::gate::Intent;
-use crate::output::csv::{RowsOf, Sheet};
+use crate::output::csv::Sheet;
 use crate::prelude::basics::*;
 use crate::report::sheet_of;
-use crate::{AnyCommand, Command, ConnectMode, Driver, Outcome, Report};
+use crate::{AnyCommand, Command, ConnectMode, Driver, Outcome};
 
 /// Shared commands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,7 +68,7 @@ impl<C: Command<Report: CommonReport>> AnyCommand for CommonCommand<C> {
         AnyCommand::intent(&self.0, robot)
     }
 
-    fn driver(&self) -> Option<&'static dyn Driver> {
+    fn driver(&self) -> Option<&'static Driver> {
         Some(connection::driver::<C::Family>())
     }
 

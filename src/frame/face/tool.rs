@@ -4,7 +4,7 @@ use clap::{ArgMatches, Args, Command, FromArgMatches as _};
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
-use super::explain::{CodeExplanation, Explain, Explaining};
+use super::explain::{CodeExplanation, Explain, explain};
 use super::registration::Declaration;
 use crate::SchemaEntry;
 use crate::decode::{self, Decode};
@@ -33,23 +33,23 @@ pub struct Tool {
     /// Arguments.
     pub augment: fn(Command) -> Command,
     /// Parser of the arguments.
-    pub read: fn(&mut ArgMatches) -> Result<Box<dyn ToolTask>, clap::Error>,
+    pub read: fn(&mut ArgMatches) -> Result<ToolTask, clap::Error>,
     /// Schemas of the tool's reports.
     pub schemas: fn() -> Vec<SchemaEntry>,
 }
 
-/// Parsed arguments of a tool.
-pub trait ToolTask: 'static {
-    /// Runs the tool.
-    fn run(self: Box<Self>, run: &Run) -> LocalBoxFuture<'_, Result<(), RunError>>;
-}
+/// A tool with its parsed arguments.
+pub type ToolTask = Box<dyn FnOnce(&Run) -> LocalBoxFuture<'_, Result<(), RunError>>>;
 
 impl Tool {
     /// Decodes bytes or a capture file.
     pub fn decode<D: Decode + Args + 'static>() -> Self {
         Self {
             augment: D::augment_args,
-            read: |matches| Ok(Box::new(Decoding(D::from_arg_matches_mut(matches)?))),
+            read: |matches| {
+                let arguments = D::from_arg_matches_mut(matches)?;
+                Ok(Box::new(move |run| async move { decode::run(&arguments, run) }.boxed_local()))
+            },
             schemas: || decode::schemas::<D>().into(),
         }
     }
@@ -58,7 +58,10 @@ impl Tool {
     pub fn explain<F: Declaration>() -> Self {
         Self {
             augment: F::Explain::augment_args,
-            read: |matches| Ok(Box::new(Explaining::<F>(F::Explain::from_arg_matches_mut(matches)?))),
+            read: |matches| {
+                let code = F::Explain::from_arg_matches_mut(matches)?;
+                Ok(Box::new(move |run| explain::<F>(code, run).boxed_local()))
+            },
             schemas: || vec![SchemaEntry::of::<CodeExplanation<<F::Explain as Explain>::Report>>(F::Explain::ID)],
         }
     }
@@ -67,23 +70,11 @@ impl Tool {
     pub fn simulate<S: Serve + Args + 'static>() -> Self {
         Self {
             augment: S::augment_args,
-            read: |matches| Ok(Box::new(Serving(S::from_arg_matches_mut(matches)?))),
+            read: |matches| {
+                let arguments = S::from_arg_matches_mut(matches)?;
+                Ok(Box::new(move |run| serve::run(arguments, run).boxed_local()))
+            },
             schemas: || vec![serve::schema::<S>()],
         }
-    }
-}
-
-struct Decoding<D>(D);
-struct Serving<S>(S);
-
-impl<D: Decode + 'static> ToolTask for Decoding<D> {
-    fn run(self: Box<Self>, run: &Run) -> LocalBoxFuture<'_, Result<(), RunError>> {
-        async move { decode::run(&self.0, run) }.boxed_local()
-    }
-}
-
-impl<S: Serve + 'static> ToolTask for Serving<S> {
-    fn run(self: Box<Self>, run: &Run) -> LocalBoxFuture<'_, Result<(), RunError>> {
-        async move { serve::run(self.0, run).await }.boxed_local()
     }
 }

@@ -1,9 +1,6 @@
 //! Arguments of a command that draws a motion.
 
 use std::marker::PhantomData;
-use std::path::{Path, PathBuf};
-
-use clap::ValueEnum;
 
 use super::report::PathReport;
 use super::{Drawing, html, svg};
@@ -56,35 +53,25 @@ pub struct PathOptions {
     html: Option<PathBuf>,
     /// Draw over the motion in this backup, and report which positions differ
     #[arg(long, value_name = "FOLDER", requires = "path", add = ValueKind::Backup)]
-    compare: Option<PathBuf>,
+    pub compare: Option<PathBuf>,
     /// Read from this backup. Needs no robot
     #[arg(long, value_name = "FOLDER", requires = "path", add = ValueKind::Backup)]
-    from: Option<PathBuf>,
+    pub from: Option<PathBuf>,
     /// Replace the files of --svg and --html if they exist
     #[arg(long, requires = "path")]
     force: bool,
 }
 
 impl PathOptions {
-    /// Folder of `--compare`.
-    pub fn compare(&self) -> Option<&Path> {
-        self.compare.as_deref()
-    }
-
-    /// Folder of `--from`.
-    pub fn from(&self) -> Option<&Path> {
-        self.from.as_deref()
-    }
-
     /// Checks the files to write, before anything is sent. With `several` robots, files are not possible.
     ///
     /// # Errors
     /// A file exists, or cannot be used.
-    pub fn check(&self, several: bool) -> Result<(), Failure> {
+    pub fn check(&self, several: bool) -> Result<()> {
         [&self.svg, &self.html].into_iter().try_for_each(|file| self.target(file.as_deref(), several).map(drop))
     }
 
-    fn target(&self, file: Option<&Path>, several: bool) -> Result<Option<Target>, Failure> {
+    fn target(&self, file: Option<&Path>, several: bool) -> Result<Option<Target>> {
         text_files::target(file, self.force, several)
     }
 
@@ -92,7 +79,7 @@ impl PathOptions {
     ///
     /// # Errors
     /// There is nothing to draw, or a file cannot be written.
-    pub fn report(&self, drawing: Drawing) -> Result<PathReport, Failure> {
+    pub fn report(&self, drawing: Drawing) -> Result<PathReport> {
         let mut files = Vec::new();
         if let Some(target) = self.target(self.svg.as_deref(), false)? {
             files.push(text_files::write(&target, &svg::document(&drawing))?);

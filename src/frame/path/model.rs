@@ -1,6 +1,5 @@
 //! Motion of a program: steps with their positions over time, and what is not drawn.
 
-use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use crate::prelude::basics::*;

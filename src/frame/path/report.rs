@@ -2,9 +2,7 @@
 
 use super::model::{Difference, Drawing, Interpolation, Motion, NotDrawn};
 use super::{Plane, terminal};
-use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
-use crate::report::Report;
 
 /// Maximum number of steps, and of lines that are not drawn, that are listed for people.
 const MAX_LISTED: usize = 30;

@@ -1,12 +1,8 @@
 //! Call tree of programs.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use super::Program;
 use crate::items::{self, ItemError};
-use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
-use crate::report::Report;
 use armctl_controller::references::Role;
 
 /// Which programs call which.

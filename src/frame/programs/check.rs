@@ -1,8 +1,5 @@
 //! Checks of programs that are the same in all families: labels, calls, positions, variables, speeds.
 
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
-
 use similar::DiffTag;
 
 use super::calls::CallGraph;
@@ -14,7 +11,6 @@ use crate::items::ItemError;
 use crate::prelude::basics::*;
 use armctl_controller::findings::{Finding, Rule, Severity};
 use armctl_controller::references::{Reference, Role};
-use armctl_controller::similar_word::nearest;
 
 /// Maximum number of positions that a finding names.
 const MAX_NAMES: usize = 20;
@@ -64,7 +60,7 @@ impl CheckArguments {
     ///
     /// # Errors
     /// The errors of [`CheckSettings::load`].
-    pub fn settings(&self, folder: Option<&Path>) -> Result<CheckSettings, Failure> {
+    pub fn settings(&self, folder: Option<&Path>) -> Result<CheckSettings> {
         let mut settings = CheckSettings::load(folder)?;
         settings.max_speed.extend(&self.max_speed);
         settings.tolerance.extend(&self.tolerance);

@@ -4,9 +4,7 @@ use regex_bites::{Regex, RegexBuilder, escape};
 
 use super::Program;
 use crate::items::{self, ItemError};
-use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
-use crate::report::Report;
 use armctl_controller::references::{Reference, Role};
 
 /// Arguments of a search.
@@ -24,7 +22,7 @@ pub struct SearchArguments {
     ignore_case: bool,
     /// Lines that use this object: an address, or a name of the robot
     #[arg(long, value_name = "OBJECT")]
-    uses: Option<String>,
+    pub uses: Option<String>,
     /// Lines that call or start this program
     #[arg(long, value_name = "NAME")]
     calls: Option<String>,
@@ -37,16 +35,11 @@ impl SearchArguments {
         self.pattern.as_deref().filter(|_| !has_more)
     }
 
-    /// Object of `--uses`.
-    pub fn uses(&self) -> Option<&str> {
-        self.uses.as_deref()
-    }
-
     /// Finds the lines that meet all conditions. `objects` are the names of the object of `--uses` in references.
     ///
     /// # Errors
     /// The pattern is not valid.
-    pub fn search(&self, programs: &[Program], objects: &[String], unread: Vec<ItemError>) -> Result<Matches, Failure> {
+    pub fn search(&self, programs: &[Program], objects: &[String], unread: Vec<ItemError>) -> Result<Matches> {
         let regex = self.regex()?;
         let mut matches = Vec::new();
         for program in programs {
@@ -68,7 +61,7 @@ impl SearchArguments {
         Ok(Matches { programs: programs.len(), matches, unread })
     }
 
-    fn regex(&self) -> Result<Option<Regex>, Failure> {
+    fn regex(&self) -> Result<Option<Regex>> {
         let Some(pattern) = &self.pattern else { return Ok(None) };
         let source = if self.extended { pattern.clone() } else { from_basic(pattern) };
         let regex = RegexBuilder::new(&source).case_insensitive(self.ignore_case).build();

@@ -1,8 +1,6 @@
 //! Settings of a check: rules that are off, limits, and programs that are ignored, in `.armctl-check.toml`.
 
-use std::collections::BTreeMap;
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -12,8 +10,6 @@ use crate::backup::tolerance::Limit;
 use crate::prelude::basics::*;
 use crate::settings::inventory::{line_and_column, matches_pattern, suggestion};
 use armctl_controller::findings::{Finding, Rule};
-use armctl_controller::similar_word::nearest;
-use armctl_files as files;
 
 /// Name of the file. It is searched in the folder that is checked, then in the current folder.
 pub const FILE: &str = ".armctl-check.toml";
@@ -66,7 +62,7 @@ impl CheckSettings {
     ///
     /// # Errors
     /// The file cannot be read, or has a mistake.
-    pub fn load(folder: Option<&Path>) -> Result<Self, Failure> {
+    pub fn load(folder: Option<&Path>) -> Result<Self> {
         for path in folder.into_iter().chain([Path::new("")]).map(|folder| folder.join(FILE)) {
             match files::text(&path, MAX_SIZE) {
                 Ok(text) => {
@@ -79,7 +75,7 @@ impl CheckSettings {
         Ok(Self::default())
     }
 
-    fn parse(text: &str, name: &str) -> Result<Self, Failure> {
+    fn parse(text: &str, name: &str) -> Result<Self> {
         let at = |start: usize, what: &str| {
             let (line, column) = line_and_column(text, start);
             Failure::usage(format!("{name}:{line}:{column}: {what}"))

@@ -1,15 +1,10 @@
 //! Source of programs: a backup, or another folder with program files. A family reads the programs of a controller into
 //! the same [`ProgramSet`].
 
-use std::path::Path;
-
-use anyhow::Context as _;
-
 use crate::backup::manifest::{self, About, Manifest};
 use crate::items::ItemError;
 use crate::prelude::basics::*;
 use crate::text_files;
-use armctl_controller::similar_word::nearest;
 
 /// A program file: a job, or a sequential program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -51,10 +46,7 @@ pub struct FolderFilter {
 ///
 /// # Errors
 /// The folder or a file cannot be read, the backup is of another family, or the folder contains no program.
-pub fn read_folder<C: About>(
-    folder: &Path,
-    filter: FolderFilter,
-) -> Result<(ProgramSet, Option<Manifest<C>>), Failure> {
+pub fn read_folder<C: About>(folder: &Path, filter: FolderFilter) -> Result<(ProgramSet, Option<Manifest<C>>)> {
     let manifest = manifest::read::<C>(folder)?;
     let set = match &manifest {
         Some(manifest) => of_backup(folder, filter, manifest)?,
@@ -68,7 +60,7 @@ pub fn read_folder<C: About>(
     Ok((set, manifest))
 }
 
-fn of_backup<C: About>(folder: &Path, filter: FolderFilter, manifest: &Manifest<C>) -> Result<ProgramSet, Failure> {
+fn of_backup<C: About>(folder: &Path, filter: FolderFilter, manifest: &Manifest<C>) -> Result<ProgramSet> {
     let mut set = ProgramSet { is_partial: !manifest.scope.is_empty(), ..ProgramSet::default() };
     for entry in manifest.files.iter().filter(|entry| entry.holds == filter.holds) {
         match (&entry.copy, &entry.error) {
@@ -82,7 +74,7 @@ fn of_backup<C: About>(folder: &Path, filter: FolderFilter, manifest: &Manifest<
     Ok(set)
 }
 
-fn of_folder(folder: &Path, filter: FolderFilter) -> Result<ProgramSet, Failure> {
+fn of_folder(folder: &Path, filter: FolderFilter) -> Result<ProgramSet> {
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
         let entry = entry.with_context(|| folder.display().to_string())?;
@@ -93,7 +85,7 @@ fn of_folder(folder: &Path, filter: FolderFilter) -> Result<ProgramSet, Failure>
     Ok(ProgramSet { files: names.iter().map(read).collect::<Result<_, _>>()?, is_loose: true, ..ProgramSet::default() })
 }
 
-fn read_file(path: &Path, name: String) -> Result<ProgramFile, Failure> {
+fn read_file(path: &Path, name: String) -> Result<ProgramFile> {
     Ok(ProgramFile { name, file: text_files::display_path(path), bytes: text_files::read(path)? })
 }
 
@@ -101,7 +93,7 @@ fn read_file(path: &Path, name: String) -> Result<ProgramFile, Failure> {
 ///
 /// # Errors
 /// The first name without a program.
-pub fn check_names<'a>(names: &[String], known: impl Iterator<Item = &'a str> + Clone) -> Result<(), Failure> {
+pub fn check_names<'a>(names: &[String], known: impl Iterator<Item = &'a str> + Clone) -> Result<()> {
     let Some(missing) = names.iter().find(|name| !known.clone().any(|known| known == name.as_str())) else {
         return Ok(());
     };

@@ -4,7 +4,6 @@ use super::Program;
 use super::settings::FILE;
 use crate::items::{self, ItemError};
 use crate::prelude::basics::*;
-use crate::report::Report;
 use armctl_controller::findings::{Finding, Rule};
 
 /// Result for all files. `M` is what the family adds to a file. Its name is the name of the schema.

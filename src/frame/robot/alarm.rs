@@ -1,11 +1,9 @@
 //! Alarms and errors: common keys of `alarm list` and `alarm history` in every family, `explain`, `top` and topics.
 
-use crate::Report;
 use crate::face::shared_commands::CommonReport;
 use crate::items::{ItemError, ItemOutcome, verdict};
 use crate::prelude::basics::*;
 use crate::settings::alarms::Explanation;
-use crate::settings::target::Family;
 
 /// An alarm or error. A field is null if the protocol does not report it, or if its value is unknown.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
@@ -153,7 +151,7 @@ pub struct AlarmEntry<T> {
 
 impl<T> Row<T> {
     /// Entry at an index of a list; `asked` is its name in errors.
-    pub fn new(index: u16, asked: impl Into<String>, outcome: Result<AlarmEntry<T>, Failure>) -> Self {
+    pub fn new(index: u16, asked: impl Into<String>, outcome: Result<AlarmEntry<T>>) -> Self {
         Self { list: None, index, outcome: ItemOutcome::new(asked, outcome) }
     }
 }

@@ -3,14 +3,9 @@
 //! Reports have `files[]` with `name`, `bytes`, `sha256`, `path`, `ok` and, after a failure, `error`. Each file has its
 //! own result. Parts of a backup, such as `points-1`, are files.
 
-use std::fmt;
-use std::path::Path;
-
-use crate::Report;
 use crate::backup::manifest::{Hash, LeftOut, Saved};
 use crate::backup::{continues_after, severity};
 use crate::items::ItemError;
-use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
 
 /// A file.
@@ -37,7 +32,7 @@ pub struct FileItem<M = Transfer> {
 
 impl<M> FileItem<M> {
     /// File without content, with its result.
-    pub fn new(name: impl fmt::Display, more: M, outcome: Result<(), Failure>) -> Self {
+    pub fn new(name: impl fmt::Display, more: M, outcome: Result<()>) -> Self {
         let name = name.to_string();
         let error = outcome.err().map(|failure| ItemError::new(name.as_str(), failure));
         Self { name, bytes: None, sha256: None, path: None, more, ok: error.is_none(), error }
@@ -122,7 +117,7 @@ impl FileItem {
     }
 
     /// Records the content, or the failure. Returns whether the next file can be tried.
-    pub fn finish(&mut self, outcome: Result<Option<Hash>, Failure>) -> bool {
+    pub fn finish(&mut self, outcome: Result<Option<Hash>>) -> bool {
         match outcome {
             Ok(content) => {
                 if let Some(content) = content {
@@ -227,7 +222,7 @@ impl<M> Files<M> {
     }
 
     /// The failure, if there is only one file and it failed.
-    pub fn single_failure(self) -> Result<Self, Failure> {
+    pub fn single_failure(self) -> Result<Self> {
         match &self.files[..] {
             [FileItem { error: Some(error), .. }] => Err(error.failure()),
             _ => Ok(self),

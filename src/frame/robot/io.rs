@@ -1,6 +1,5 @@
 //! Signals: common keys of `io get|set|list|watch` in every family, and of `armctl io`.
 
-use crate::Report;
 use crate::items::{ItemError, all_failed, verdict};
 use crate::prelude::basics::*;
 use crate::watch::Watched;
@@ -114,7 +113,7 @@ pub struct IoRow {
 
 impl IoRow {
     /// Result of a read.
-    pub fn new(item: IoItem, outcome: Result<IoValue, Failure>) -> Self {
+    pub fn new(item: IoItem, outcome: Result<IoValue>) -> Self {
         match outcome {
             Ok(value) => Self { item, ok: true, value: Some(value), error: None },
             Err(failure) => {
@@ -125,7 +124,7 @@ impl IoRow {
     }
 
     /// Result of a read of a single signal.
-    pub fn state(item: IoItem, outcome: Result<bool, Failure>) -> Self {
+    pub fn state(item: IoItem, outcome: Result<bool>) -> Self {
         Self::new(item, outcome.map(IoValue::State))
     }
 
@@ -151,7 +150,7 @@ impl Signals {
     ///
     /// # Errors
     /// If no signal was read, for the same reason.
-    pub fn new(items: Vec<IoRow>) -> Result<Self, Failure> {
+    pub fn new(items: Vec<IoRow>) -> Result<Self> {
         all_failed(items.len(), items.iter().filter_map(|row| row.error.as_ref()))?;
         Ok(Self { items })
     }
@@ -190,7 +189,7 @@ impl WrittenSignal {
     }
 
     /// Result of a write that succeeded, or failed for this reason.
-    pub fn with_outcome(item: IoItem, old: Option<IoValue>, new: IoValue, outcome: Result<bool, Failure>) -> Self {
+    pub fn with_outcome(item: IoItem, old: Option<IoValue>, new: IoValue, outcome: Result<bool>) -> Self {
         let written = outcome == Ok(true);
         Self { row: IoRow::new(item, outcome.map(|_| new)), old, new, written }
     }
@@ -217,7 +216,7 @@ impl WrittenSignals {
     }
 
     /// The report, unless all signals failed for the same reason.
-    pub fn unless_all_failed(self) -> Result<Self, Failure> {
+    pub fn unless_all_failed(self) -> Result<Self> {
         all_failed(self.items.len(), self.errors())?;
         Ok(self)
     }
@@ -245,10 +244,8 @@ impl Report for WrittenSignals {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
-    use crate::failure::Kind;
 
     fn item(label: Option<&str>) -> IoItem {
         let (name, address) = ("IN1.3".to_owned(), "PN01.3".to_owned());

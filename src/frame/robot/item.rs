@@ -3,9 +3,7 @@
 //! Reads report `items[]` with `name`, `label`, `kind`, `ok`, `value` and, after a failure, `error`. Writes also
 //! report `old`, `new` and `written`. Each item has its own result.
 
-use crate::Report;
 use crate::items::{ItemError, verdict};
-use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
 
 /// No family-specific fields.
@@ -39,14 +37,14 @@ pub struct Item<V, M = Plain> {
 
 impl<V> Item<V> {
     /// Item with its value, or the reason why it was not read.
-    pub fn new(kind: &'static str, name: impl Into<String>, outcome: Result<Option<V>, Failure>) -> Self {
+    pub fn new(kind: &'static str, name: impl Into<String>, outcome: Result<Option<V>>) -> Self {
         Self::with(kind, name, Plain {}, outcome)
     }
 }
 
 impl<V, M> Item<V, M> {
     /// Item with family-specific fields.
-    pub fn with(kind: &'static str, name: impl Into<String>, more: M, outcome: Result<Option<V>, Failure>) -> Self {
+    pub fn with(kind: &'static str, name: impl Into<String>, more: M, outcome: Result<Option<V>>) -> Self {
         let name = name.into();
         let (ok, value, error) = match outcome {
             Ok(value) => (true, value, None),
@@ -119,7 +117,7 @@ impl<V, M> Items<V, M> {
     }
 
     /// The failure, if there is only one item and it was not read.
-    pub fn single_failure(self) -> Result<Self, Failure> {
+    pub fn single_failure(self) -> Result<Self> {
         match &self.items[..] {
             [Item { error: Some(error), .. }] => Err(error.failure()),
             _ => Ok(self),
@@ -224,7 +222,7 @@ impl<V, M> WrittenItems<V, M> {
 
 impl<V, M> WrittenItems<V, M> {
     /// The failure, if there is only one item and it was not written.
-    pub fn or_only_failure(self) -> Result<Self, Failure> {
+    pub fn or_only_failure(self) -> Result<Self> {
         match &self.items[..] {
             [Written { item: Item { error: Some(error), .. }, .. }] => Err(error.failure()),
             _ => Ok(self),

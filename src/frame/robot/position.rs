@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 
 use schemars::{Schema, SchemaGenerator};
 
-use crate::Report;
 use crate::face::shared_commands::CommonReport;
 use crate::items::{ItemError, verdict};
 use crate::plot::{Plot, SeriesHistory};
@@ -199,7 +198,7 @@ pub struct Row {
 
 impl Row {
     /// Position of a group in a frame.
-    pub fn new(group: &str, frame: &str, outcome: Result<Position, Failure>) -> Self {
+    pub fn new(group: &str, frame: &str, outcome: Result<Position>) -> Self {
         match outcome {
             Ok(position) => Self { position: position.of_group(group), ok: true, error: None },
             Err(failure) => Self {
@@ -331,7 +330,6 @@ impl Report for AllPositions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::failure::Kind;
     use crate::output::csv::Sheet;
     use crate::output::render;
     use crate::report::sheet_of;

@@ -84,7 +84,7 @@ impl Fault {
     }
 
     /// Replaces the text with the text of the operator's `alarms.toml`, if the file has one for the code.
-    pub fn explain(&mut self, robot: &Robot) -> Result<(), Failure> {
+    pub fn explain(&mut self, robot: &Robot) -> Result<()> {
         if let Some(code) = &self.fault_code
             && let Some(explained) = alarms::find(robot, code)?
         {

@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 
 use jiff::Timestamp;
-use serde_json::Value;
 
 use super::failure_log::RoundFailures;
 use super::{Run, RunError};
@@ -36,7 +35,7 @@ pub enum ReportPosition<'a> {
 impl Run {
     /// Writes the envelope of a failed line, in the order of the lines. Returns `false` if the output is for people,
     /// who see the failure on stderr.
-    pub fn report_failure(&self, stopped: &RunError) -> Result<bool, Failure> {
+    pub fn report_failure(&self, stopped: &RunError) -> Result<bool> {
         if self.is_for_people() {
             return Ok(false);
         }
@@ -65,7 +64,7 @@ impl Run {
         robots: &[Robot],
         outcomes: &[Outcome],
         (place, said): (ReportPosition<'_>, &mut RoundFailures<'_>),
-    ) -> Result<Vec<Envelope>, Failure> {
+    ) -> Result<Vec<Envelope>> {
         let envelopes = envelopes(robots, command.id(), outcomes)?;
         if !self.is_for_people() {
             if self.screen.format == Format::Jsonl {
@@ -124,7 +123,7 @@ impl Run {
 
     /// Merges tables with the same columns into one table, with the robot in the first column. Other views are printed
     /// one below the other.
-    fn show_many(&self, views: &[RobotView<'_>], place: ReportPosition<'_>) -> Result<(), Failure> {
+    fn show_many(&self, views: &[RobotView<'_>], place: ReportPosition<'_>) -> Result<()> {
         let names: Vec<String> = views.iter().map(|of| of.named(&of.robot.name)).collect();
         let tables = names.iter().zip(views).map(|(name, of)| Some((name.as_str(), of.view.as_table()?)));
         match tables.collect::<Option<Vec<_>>>().and_then(|tables| Table::joined("robot", &tables)) {
@@ -147,7 +146,7 @@ impl Run {
         id: &str,
         report: &dyn AnyReport,
         place: ReportPosition<'_>,
-    ) -> Result<(), Failure> {
+    ) -> Result<()> {
         if self.is_for_people() {
             return match place {
                 ReportPosition::LineOf(robot) if self.screen.format.is_rows() => {
@@ -179,7 +178,7 @@ impl Run {
     }
 
     /// Writes an envelope.
-    pub(super) fn emit(&self, envelope: Envelope) -> Result<(), Failure> {
+    pub(super) fn emit(&self, envelope: Envelope) -> Result<()> {
         self.write(&self.with_time_mark(envelope))
     }
 
@@ -191,7 +190,7 @@ impl Run {
     }
 
     /// Writes JSON, or the results of the filter, one per line. Strings are written raw, all other results as JSON.
-    fn write(&self, value: &impl Serialize) -> Result<(), Failure> {
+    fn write(&self, value: &impl Serialize) -> Result<()> {
         let value = match &self.line {
             Some(line) => line.stop_passing(as_value(value)?),
             None if self.filter.is_none() => return self.screen.json(value),
@@ -205,7 +204,7 @@ impl Run {
         })
     }
 
-    fn show_one(&self, report: &dyn AnyReport, place: ReportPosition<'_>) -> Result<(), Failure> {
+    fn show_one(&self, report: &dyn AnyReport, place: ReportPosition<'_>) -> Result<()> {
         match self.screen.format {
             Format::Csv | Format::Value => self.show_csv(&sheet_of(report), &[(None, Ok(report))], place),
             _ => self.show(&report.view(), place),
@@ -214,7 +213,7 @@ impl Run {
 
     /// Writes reports of one kind as CSV, with a row for each robot that failed. Later rounds of a watch are written
     /// below the first header.
-    fn show_csv(&self, sheet: &Sheet, rows: &[RobotRow<'_>], place: ReportPosition<'_>) -> Result<(), Failure> {
+    fn show_csv(&self, sheet: &Sheet, rows: &[RobotRow<'_>], place: ReportPosition<'_>) -> Result<()> {
         let is_csv = self.screen.format == Format::Csv;
         let is_round = is_csv
             && self.repeat.is_wanted()
@@ -248,7 +247,7 @@ impl Run {
         self.screen.data(&text)
     }
 
-    fn show(&self, view: &View, place: ReportPosition<'_>) -> Result<(), Failure> {
+    fn show(&self, view: &View, place: ReportPosition<'_>) -> Result<()> {
         let screen = &self.screen;
         let text = render::text(view, screen.width(), screen.stdout_color());
         let text = match place {
@@ -384,12 +383,12 @@ pub(super) fn with_robot_name(robot: &Robot, failure: Failure) -> Failure {
 }
 
 /// Envelopes for the reports or failures of several robots.
-pub(super) fn envelopes(robots: &[Robot], id: &str, outcomes: &[Outcome]) -> Result<Vec<Envelope>, Failure> {
+pub(super) fn envelopes(robots: &[Robot], id: &str, outcomes: &[Outcome]) -> Result<Vec<Envelope>> {
     let pairs = robots.iter().zip(outcomes);
     pairs.map(|(robot, outcome)| envelope(robot, id, outcome.as_deref().map_err(Clone::clone))).collect()
 }
 
-pub fn envelope(robot: &Robot, id: &str, outcome: Result<&dyn AnyReport, Failure>) -> Result<Envelope, Failure> {
+pub fn envelope(robot: &Robot, id: &str, outcome: Result<&dyn AnyReport>) -> Result<Envelope> {
     let report = match outcome {
         Err(failure) => return Ok(Envelope::of(robot, id, Err(failure))),
         Ok(report) => report,
@@ -404,14 +403,13 @@ pub fn with_time(envelope: Envelope) -> Envelope {
 }
 
 /// Converts an output to a JSON value.
-pub fn as_value(value: &impl Serialize) -> Result<Value, Failure> {
+pub fn as_value(value: &impl Serialize) -> Result<Value> {
     serde_json::to_value(value).map_err(|error| Failure::local(format!("report as JSON: {error}")))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::failure::Kind;
     use crate::settings::Sources;
     use crate::settings::inventory::Inventory;
 

@@ -1,14 +1,11 @@
 //! Rounds of a repeated read.
 
-use std::time::Duration;
-
 use tokio::time::{Instant, timeout_at};
 
 use super::print::as_value;
 use crate::condition::Condition;
 use crate::interrupt::interruptible;
 use crate::prelude::basics::*;
-use crate::settings::duration;
 
 /// Minimum time of each read, even if `--for` ends earlier. Otherwise a robot that answers at once could count as a
 /// robot that does not answer.
@@ -58,7 +55,7 @@ impl Deadline {
     pub const NONE: Self = Self(None);
 
     /// Result of `work` with a robot, or a missing answer when the time is over.
-    pub async fn bound<T>(self, robot: &Robot, work: impl Future<Output = Result<T, Failure>>) -> Result<T, Failure> {
+    pub async fn bound<T>(self, robot: &Robot, work: impl Future<Output = Result<T>>) -> Result<T> {
         let Some((end, within)) = self.0 else { return work.await };
         let end = end.max(Instant::now() + MIN_READ_TIME);
         timeout_at(end, work).await.unwrap_or_else(|_| {
@@ -106,7 +103,7 @@ impl<'a> Rounds<'a> {
 
     /// Whether the condition of `--until` is true. In the first round, a note is printed if the condition can never be
     /// true.
-    pub fn is_met(&self, value: &impl Serialize, screen: &Screen) -> Result<bool, Failure> {
+    pub fn is_met(&self, value: &impl Serialize, screen: &Screen) -> Result<bool> {
         let Some(until) = &self.repeat.until else { return Ok(false) };
         let value = as_value(value)?;
         if until.is_met(&value)? {
@@ -128,7 +125,7 @@ impl<'a> Rounds<'a> {
     }
 
     /// Waits for the next round. Returns `false` if there is no further round.
-    pub async fn next(&mut self) -> Result<bool, Failure> {
+    pub async fn next(&mut self) -> Result<bool> {
         let is_over = self.is_last();
         self.completed = self.completed.saturating_add(1);
         let next = self.began + self.every.saturating_mul(self.completed);
@@ -144,7 +141,7 @@ impl<'a> Rounds<'a> {
     }
 
     /// Result of the repetition after the last round.
-    pub fn end(&self) -> Result<(), Failure> {
+    pub fn end(&self) -> Result<()> {
         let Some(until) = &self.repeat.until else { return Ok(()) };
         Err(Failure::new(Kind::ConditionNotMet, format!("the condition '{until}' was not met"))
             .hint("use --for to set a longer wait"))
@@ -154,7 +151,6 @@ impl<'a> Rounds<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::target::Family;
     use crate::settings::{Sources, target};
 
     fn robot() -> Robot {
@@ -166,7 +162,7 @@ mod tests {
         Repeat { within: Some(within), ..Repeat::default() }
     }
 
-    async fn answer_after(time: Duration) -> Result<(), Failure> {
+    async fn answer_after(time: Duration) -> Result<()> {
         tokio::time::sleep(time).await;
         Ok(())
     }
@@ -176,7 +172,7 @@ mod tests {
         let (robot, within) = (robot(), Duration::from_secs(1));
         let repeat = repeat(within);
         let mut rounds = Rounds::new(&repeat, Duration::from_millis(200));
-        let silent = || std::future::pending::<Result<(), Failure>>();
+        let silent = || std::future::pending::<Result<()>>();
         let failure = rounds.deadline().bound(&robot, silent()).await.unwrap_err();
         assert_eq!((failure.kind, rounds.began.elapsed()), (Kind::NoAnswer, within), "{failure}");
         assert!(!rounds.is_cut(&failure), "the robot never answered");

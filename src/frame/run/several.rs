@@ -1,6 +1,6 @@
 //! A command for several robots. It runs in parallel, with one connection for each robot.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::failure_log::RoundFailures;
 use super::print::{ReportPosition, envelopes, with_robot_name, with_time};
@@ -44,7 +44,7 @@ impl Run {
         &self,
         command: &dyn AnyCommand,
         robots: &[Robot],
-        (links, mut rounds): (&mut [Result<Granted, Failure>], Rounds<'_>),
+        (links, mut rounds): (&mut [Result<Granted>], Rounds<'_>),
     ) -> Result<(), RunError> {
         let end = rounds.deadline();
         let mut last: Option<Vec<Outcome>> = None;

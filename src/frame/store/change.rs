@@ -1,9 +1,8 @@
 //! Write of rows: reads the old rows, confirms the changes, and writes the rows that differ. Each row has its own
 //! result.
 
-use super::{Answers, RowDifference, Store, Writable, WrittenOf, columns, item};
+use super::{Answers, LinkOf, RowDifference, Store, Writable, WrittenOf, columns, item};
 use crate::confirmation::Confirmer;
-use crate::connection::Family;
 use crate::dry_run::{Known as _, unknown};
 use crate::interrupt::interruptible;
 use crate::items::describe_request;
@@ -35,7 +34,7 @@ pub struct TableWrite<'a, S: Store> {
     /// Robot.
     pub robot: &'a Robot,
     /// Connection to the robot.
-    pub link: &'a mut <S::Family as Family>::Link,
+    pub link: &'a mut LinkOf<S>,
     /// Screen for progress and notes.
     pub screen: &'a Screen,
     /// Authority that confirms the overwriting of user data.
@@ -52,7 +51,7 @@ pub struct ComparedRow<S: Store> {
     /// New content.
     pub new: S::Wire,
     /// Whether the row was written, or why it was not written.
-    pub outcome: Result<bool, Failure>,
+    pub outcome: Result<bool>,
     /// Whether the row was not tried, because an earlier failure ended the write.
     pub is_skipped: bool,
 }
@@ -70,7 +69,7 @@ impl<S: Store> ComparedRow<S> {
 }
 
 /// Writes the rows that differ. Stops at the first failure of the link. Each row has its own result.
-pub async fn write<S: Writable>(work: TableWrite<'_, S>, rows: Vec<Row<S>>) -> Result<WrittenOf<S>, Failure> {
+pub async fn write<S: Writable>(work: TableWrite<'_, S>, rows: Vec<Row<S>>) -> Result<WrittenOf<S>> {
     let TableWrite { mut table, robot, link, screen, confirmer } = work;
     table.select(link).await.map_err(nothing_written)?;
     let compared = write_rows(&table, link, screen, confirmer, rows).await;
@@ -106,11 +105,11 @@ pub async fn write<S: Writable>(work: TableWrite<'_, S>, rows: Vec<Row<S>>) -> R
 /// Compares rows with the controller, asks the user to confirm, and writes the rows that differ.
 pub async fn write_rows<S: Writable>(
     table: &S,
-    link: &mut <S::Family as Family>::Link,
+    link: &mut LinkOf<S>,
     screen: &Screen,
     confirmer: Confirmer<'_>,
     rows: Vec<Row<S>>,
-) -> Result<Vec<ComparedRow<S>>, Failure> {
+) -> Result<Vec<ComparedRow<S>>> {
     let Some(mut compared) = compare(table, link, screen, &rows).await? else {
         table.plan(link, &rows).await?;
         return Err(unknown());
@@ -127,10 +126,10 @@ pub async fn write_rows<S: Writable>(
 /// If a read fails. The failure states that nothing was written.
 pub async fn compare<S: Writable>(
     table: &S,
-    link: &mut <S::Family as Family>::Link,
+    link: &mut LinkOf<S>,
     screen: &Screen,
     rows: &[Row<S>],
-) -> Result<Option<Vec<ComparedRow<S>>>, Failure> {
+) -> Result<Option<Vec<ComparedRow<S>>>> {
     let read = match table.read_old(link, screen, rows).await {
         // The controller refused all rows at once. This refusal is the answer for each row below.
         Err(failure) if failure.kind == Kind::Refused => {
@@ -194,12 +193,7 @@ pub fn overwriting<S: Writable>(table: &S, lost: &[[String; 3]]) -> Change {
 }
 
 /// Writes the rows that differ, and records the result of each row.
-pub async fn write_each<S: Writable>(
-    table: &S,
-    link: &mut <S::Family as Family>::Link,
-    screen: &Screen,
-    rows: &mut [ComparedRow<S>],
-) {
+pub async fn write_each<S: Writable>(table: &S, link: &mut LinkOf<S>, screen: &Screen, rows: &mut [ComparedRow<S>]) {
     let differing: Vec<usize> = (0..rows.len()).filter(|index| rows[*index].is_different()).collect();
     let blocks = table.blocks(&changes(rows, &differing));
     let mut progress = (differing.len() > 1)

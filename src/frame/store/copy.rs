@@ -32,7 +32,7 @@ impl<S: Writable> Command for Copy<S> {
         intent::<S>()
     }
 
-    async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>, Failure> {
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>> {
         let Context { robot, link, screen, confirmer, .. } = context;
         let copy_one = S::WORDS.nouns[0];
         let [from] = self.from.0[..] else {
@@ -64,7 +64,7 @@ impl<S: Writable> Command for Copy<S> {
                     .map_err(|why| Failure::usage(why).hint("correct the command; nothing was written"))?,
             ))
         };
-        let rows = to.into_iter().map(draft).collect::<Result<_, Failure>>()?;
+        let rows = to.into_iter().map(draft).collect::<Result<_>>()?;
         write(TableWrite { table, robot, link, screen, confirmer }, rows).await?.or_only_failure()
     }
 }

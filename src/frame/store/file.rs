@@ -1,14 +1,12 @@
 //! `dump` and `restore`: save rows to a CSV file for spreadsheets, and write them back.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
 
 use super::change::{Row, TableWrite, confirmation, intent, write};
 use super::get::{Rows, defined};
 use super::{Store, Writable, WrittenOf, read, read_keys, sheet};
 use crate::items::{ItemError, verdict};
 use crate::prelude::basics::*;
-use crate::report::Report;
 use crate::robot::item::as_requested;
 use crate::table_file::SheetManner;
 use crate::text_files;
@@ -44,11 +42,11 @@ impl<S: Store> Command for Dump<S> {
         S::risk_of_reading(&self.options)
     }
 
-    async fn run(&self, context: Context<'_, S::Family>) -> Result<DumpReport, Failure> {
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<DumpReport> {
         let Context { link, screen, several, .. } = context;
         let target = self.manner.target(self.file.clone(), several)?;
         // An update writes all rows of the file, including rows that are blank now.
-        let old = target.old();
+        let old = target.old.as_deref();
         let keys = old
             .filter(|_| self.rows.is_empty())
             .map_or_else(|| Ok(self.chosen()), |old| keys_of::<S>(&self.file, old))?;
@@ -117,12 +115,7 @@ pub enum Answer<W> {
 
 impl SavedRows {
     /// Decides whether an answer can be in the file. Records a row that cannot.
-    pub fn add<S: Store>(
-        &mut self,
-        table: &S,
-        key: S::Key,
-        outcome: Result<Option<S::Wire>, Failure>,
-    ) -> Answer<S::Wire> {
+    pub fn add<S: Store>(&mut self, table: &S, key: S::Key, outcome: Result<Option<S::Wire>>) -> Answer<S::Wire> {
         match defined::<S>(outcome) {
             Ok(wire) => match table.unsaved(key, wire.as_ref()) {
                 Some(why) => {
@@ -163,7 +156,7 @@ pub fn leave_out_unused<S: Store>(table: &S, columns: &mut Vec<Column>, rows: &m
 ///
 /// # Errors
 /// If the file has mistakes. The failure lists all of them.
-pub fn rows_of_file<S: Writable>(table: &S, path: &Path) -> Result<Vec<Row<S>>, Failure> {
+pub fn rows_of_file<S: Writable>(table: &S, path: &Path) -> Result<Vec<Row<S>>> {
     let bytes = text_files::read(path)?;
     let mut findings = Findings::default();
     let rows = parse(table, &bytes, &mut findings);
@@ -174,7 +167,7 @@ pub fn rows_of_file<S: Writable>(table: &S, path: &Path) -> Result<Vec<Row<S>>, 
 }
 
 /// Keys of the rows in a file, in the order of the file.
-pub fn keys_of<S: Store>(path: &Path, bytes: &[u8]) -> Result<Vec<S::Key>, Failure> {
+pub fn keys_of<S: Store>(path: &Path, bytes: &[u8]) -> Result<Vec<S::Key>> {
     let (mut findings, mut keys) = (Findings::default(), Vec::new());
     let expected = "the first column is `name`";
     if let Some(sheet) = Sheet::read(bytes, expected, &mut findings) {
@@ -264,7 +257,7 @@ impl<S: Writable> Command for Restore<S> {
         intent::<S>()
     }
 
-    async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>, Failure> {
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>> {
         let Context { robot, link, screen, confirmer, .. } = context;
         let name = text_files::display_path(&self.file);
         let mut table = S::open(link, &self.options).await?;

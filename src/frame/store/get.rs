@@ -7,7 +7,6 @@ use crate::prelude::basics::*;
 use crate::robot::item::{Item, Items};
 use crate::watch::{Watchable, Watched};
 use crate::{Command, Context};
-use armctl_controller::user_input;
 
 /// Row arguments, after parsing.
 #[derive(Debug)]
@@ -58,7 +57,7 @@ impl<S: Store> Command for Get<S> {
         S::risk_of_reading(&self.options)
     }
 
-    async fn run(&self, context: Context<'_, S::Family>) -> Result<ItemsOf<S>, Failure> {
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<ItemsOf<S>> {
         let Context { robot, link, screen, .. } = context;
         let keys = Rows::of(&self.rows);
         let mut table = S::open(link, &self.options).await?;
@@ -118,7 +117,7 @@ impl<S: Store> Command for List<S> {
         S::risk_of_reading(&self.options)
     }
 
-    async fn run(&self, context: Context<'_, S::Family>) -> Result<ItemsOf<S>, Failure> {
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<ItemsOf<S>> {
         let Context { robot, link, screen, .. } = context;
         let keys = self.keys();
         let mut table = S::open(link, &self.options).await?;
@@ -137,7 +136,7 @@ impl<S: Store> Command for List<S> {
 }
 
 /// Converts the refusal of a row that is not defined to `None`. In a list of all rows, such a row is not an error.
-pub fn defined<S: Store>(outcome: Result<Option<S::Wire>, Failure>) -> Result<Option<S::Wire>, Failure> {
+pub fn defined<S: Store>(outcome: Result<Option<S::Wire>>) -> Result<Option<S::Wire>> {
     match outcome {
         Err(failure) if S::is_undefined(&failure) => Ok(None),
         outcome => outcome,

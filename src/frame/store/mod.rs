@@ -139,19 +139,22 @@ macro_rules! table_commands {
 }
 pub use table_commands;
 
+/// Connection to the controller of a table.
+pub type LinkOf<S> = <<S as Store>::Family as Family>::Link;
+
 /// Results of rows. Each result is the content, `None` if the row is not defined, or the reason why the row was not
 /// read.
 #[derive(Debug)]
 pub struct Answers<W> {
     /// One result for each row, in the requested order.
-    pub rows: Vec<Result<Option<W>, Failure>>,
+    pub rows: Vec<Result<Option<W>>>,
     /// Number of rows that were requested. The other rows were not requested, because they would fail in the same way.
     pub asked: usize,
 }
 
 impl<W> Answers<W> {
     /// Creates the results of rows that were all requested. A row that was read is defined.
-    pub fn of(rows: Vec<Result<W, Failure>>) -> Self {
+    pub fn of(rows: Vec<Result<W>>) -> Self {
         Self { asked: rows.len(), rows: rows.into_iter().map(|row| row.map(Some)).collect() }
     }
 }
@@ -240,14 +243,10 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
 
     /// Reads the information that is needed before a row is read or written, such as the axis letters. It changes
     /// nothing.
-    async fn open(link: &mut <Self::Family as Family>::Link, options: &Self::Options) -> Result<Self, Failure>;
+    async fn open(link: &mut LinkOf<Self>, options: &Self::Options) -> Result<Self>;
 
     /// Reads the information that is needed before these rows are read, or parsed from a file.
-    async fn prepare(
-        &mut self,
-        _link: &mut <Self::Family as Family>::Link,
-        _keys: &[Self::Key],
-    ) -> Result<(), Failure> {
+    async fn prepare(&mut self, _link: &mut LinkOf<Self>, _keys: &[Self::Key]) -> Result<()> {
         Ok(())
     }
 
@@ -257,16 +256,12 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     }
 
     /// Selects this table, if the controller has several tables.
-    async fn select(&mut self, _link: &mut <Self::Family as Family>::Link) -> Result<(), Failure> {
+    async fn select(&mut self, _link: &mut LinkOf<Self>) -> Result<()> {
         Ok(())
     }
 
     /// Restores the table that was selected before [`select`](Self::select), also after a failure.
-    async fn deselect<T>(
-        &self,
-        _link: &mut <Self::Family as Family>::Link,
-        outcome: Result<T, Failure>,
-    ) -> Result<T, Failure> {
+    async fn deselect<T>(&self, _link: &mut LinkOf<Self>, outcome: Result<T>) -> Result<T> {
         outcome
     }
 
@@ -348,12 +343,7 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     ///
     /// # Errors
     /// If a failure occurs before any row was read.
-    async fn read(
-        &self,
-        link: &mut <Self::Family as Family>::Link,
-        screen: &Screen,
-        keys: &[Self::Key],
-    ) -> Result<Answers<Self::Wire>, Failure>;
+    async fn read(&self, link: &mut LinkOf<Self>, screen: &Screen, keys: &[Self::Key]) -> Result<Answers<Self::Wire>>;
 }
 
 /// A row to write: its key, its old content if known, and its new content.
@@ -383,7 +373,7 @@ pub trait Writable: Store {
     ///
     /// # Errors
     /// If the content is not valid.
-    fn typed(&self, key: Self::Key, words: &[String]) -> Result<Self::Draft, Failure> {
+    fn typed(&self, key: Self::Key, words: &[String]) -> Result<Self::Draft> {
         set::typed(self, key, words)
     }
 
@@ -391,12 +381,7 @@ pub trait Writable: Store {
     ///
     /// # Errors
     /// If an old value is needed, but is unknown or cannot be written.
-    fn complete_draft(
-        &self,
-        key: Self::Key,
-        draft: &Self::Draft,
-        old: Option<&Self::Wire>,
-    ) -> Result<Self::Wire, Failure>;
+    fn complete_draft(&self, key: Self::Key, draft: &Self::Draft, old: Option<&Self::Wire>) -> Result<Self::Wire>;
 
     /// Reads rows before a write. An implementation can override this function, so that a dry run shows its own purpose
     /// for these requests.
@@ -405,10 +390,10 @@ pub trait Writable: Store {
     /// As [`read`](Store::read).
     async fn read_old(
         &self,
-        link: &mut <Self::Family as Family>::Link,
+        link: &mut LinkOf<Self>,
         screen: &Screen,
         rows: &[Row<Self>],
-    ) -> Result<Answers<Self::Wire>, Failure> {
+    ) -> Result<Answers<Self::Wire>> {
         let keys: Vec<Self::Key> = rows.iter().map(|(key, _)| *key).collect();
         self.read(link, screen, &keys).await
     }
@@ -419,15 +404,10 @@ pub trait Writable: Store {
     }
 
     /// In a dry run, records the requests that write rows and read them back.
-    async fn plan(&self, link: &mut <Self::Family as Family>::Link, rows: &[Row<Self>]) -> Result<(), Failure>;
+    async fn plan(&self, link: &mut LinkOf<Self>, rows: &[Row<Self>]) -> Result<()>;
 
     /// Writes the rows of a [block](Self::blocks).
-    async fn write(
-        &self,
-        link: &mut <Self::Family as Family>::Link,
-        screen: &Screen,
-        rows: &[RowDifference<'_, Self>],
-    ) -> Result<(), Failure>;
+    async fn write(&self, link: &mut LinkOf<Self>, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<()>;
 }
 
 /// Report of commands that read rows.
@@ -436,12 +416,7 @@ type ItemsOf<S> = Items<<S as Store>::Value, <S as Store>::More>;
 pub type WrittenOf<S> = WrittenItems<<S as Store>::Value, <S as Store>::More>;
 
 /// Report item for a row.
-fn item<S: Store>(
-    table: &S,
-    names: &Names,
-    key: S::Key,
-    outcome: Result<Option<S::Wire>, Failure>,
-) -> Item<S::Value, S::More> {
+fn item<S: Store>(table: &S, names: &Names, key: S::Key, outcome: Result<Option<S::Wire>>) -> Item<S::Value, S::More> {
     let name = S::name(key);
     let label = S::LABELS.and_then(|kind| labels::label(names, kind, &S::address(key)));
     let wire = outcome.as_ref().ok().and_then(Option::as_ref);
@@ -494,10 +469,10 @@ pub fn difference<S: Store>(table: &S, old: &S::Wire, new: &S::Wire) -> [String;
 /// Selects the table, reads rows, and selects the previous table again.
 async fn read<S: Store>(
     table: &mut S,
-    link: &mut <S::Family as Family>::Link,
+    link: &mut LinkOf<S>,
     screen: &Screen,
     keys: &[S::Key],
-) -> Result<Answers<S::Wire>, Failure> {
+) -> Result<Answers<S::Wire>> {
     table.select(link).await?;
     let read = table.read(link, screen, keys).await;
     table.deselect(link, read).await

@@ -2,12 +2,10 @@
 
 use std::fmt::Debug;
 
-use futures_util::future::LocalBoxFuture;
-
 use super::change::{ComparedRow, Row, compare, differing, replaced, write_each};
 use super::file::{Answer, LeftOut, SavedRows, leave_out_unused, parse};
 use super::get::defined;
-use super::{Store, Writable, read, sheet};
+use super::{LinkOf, Store, Writable, read, sheet};
 use crate::connection::Family;
 use crate::prelude::basics::*;
 use armctl_controller::findings::{Finding, Findings};
@@ -47,10 +45,10 @@ pub trait TablePart<F: Family>: Debug {
     fn count(&self) -> usize;
 
     /// Reads all rows. A dry run records the requests.
-    fn read<'t>(&'t mut self, link: &'t mut F::Link, screen: &'t Screen) -> LocalBoxFuture<'t, Result<Text, Failure>>;
+    fn read<'t>(&'t mut self, link: &'t mut F::Link, screen: &'t Screen) -> LocalBoxFuture<'t, Result<Text>>;
 
     /// Compares the rows of the file with the controller. A dry run records the requests.
-    fn compare<'t>(&'t mut self, link: &'t mut F::Link, screen: &'t Screen) -> LocalBoxFuture<'t, Result<(), Failure>>;
+    fn compare<'t>(&'t mut self, link: &'t mut F::Link, screen: &'t Screen) -> LocalBoxFuture<'t, Result<()>>;
 
     /// Names of the rows that will be written.
     fn differing(&self) -> Vec<String>;
@@ -65,11 +63,7 @@ pub trait TablePart<F: Family>: Debug {
     ///
     /// # Errors
     /// If no row was tried. A failure of a row is in the result.
-    fn write<'t>(
-        &'t mut self,
-        link: &'t mut F::Link,
-        screen: &'t Screen,
-    ) -> LocalBoxFuture<'t, Result<PartResult, Failure>>;
+    fn write<'t>(&'t mut self, link: &'t mut F::Link, screen: &'t Screen) -> LocalBoxFuture<'t, Result<PartResult>>;
 }
 
 /// A table with the rows of a file.
@@ -144,11 +138,7 @@ impl<S: Writable> Part<S> {
 ///
 /// # Errors
 /// The connection was lost: the part is not complete.
-pub fn part_text<S: Writable>(
-    table: &S,
-    keys: &[S::Key],
-    rows: Vec<Result<Option<S::Wire>, Failure>>,
-) -> Result<Text, Failure> {
+pub fn part_text<S: Writable>(table: &S, keys: &[S::Key], rows: Vec<Result<Option<S::Wire>>>) -> Result<Text> {
     let (mut kept, mut refused) = (SavedRows::default(), Vec::new());
     let fields = table.fields();
     for (key, outcome) in keys.iter().zip(rows) {
@@ -210,11 +200,7 @@ impl<S: Writable> TablePart<S::Family> for Part<S> {
         self.rows.len()
     }
 
-    fn read<'t>(
-        &'t mut self,
-        link: &'t mut <S::Family as Family>::Link,
-        screen: &'t Screen,
-    ) -> LocalBoxFuture<'t, Result<Text, Failure>> {
+    fn read<'t>(&'t mut self, link: &'t mut LinkOf<S>, screen: &'t Screen) -> LocalBoxFuture<'t, Result<Text>> {
         Box::pin(async move {
             let keys = S::saved();
             self.table.prepare(link, &keys).await?;
@@ -223,11 +209,7 @@ impl<S: Writable> TablePart<S::Family> for Part<S> {
         })
     }
 
-    fn compare<'t>(
-        &'t mut self,
-        link: &'t mut <S::Family as Family>::Link,
-        screen: &'t Screen,
-    ) -> LocalBoxFuture<'t, Result<(), Failure>> {
+    fn compare<'t>(&'t mut self, link: &'t mut LinkOf<S>, screen: &'t Screen) -> LocalBoxFuture<'t, Result<()>> {
         Box::pin(async move {
             self.table.select(link).await?;
             let keys: Vec<S::Key> = self.rows.iter().map(|(key, _)| *key).collect();
@@ -256,11 +238,7 @@ impl<S: Writable> TablePart<S::Family> for Part<S> {
         self.table.consequences(&differing(&self.compared))
     }
 
-    fn write<'t>(
-        &'t mut self,
-        link: &'t mut <S::Family as Family>::Link,
-        screen: &'t Screen,
-    ) -> LocalBoxFuture<'t, Result<PartResult, Failure>> {
+    fn write<'t>(&'t mut self, link: &'t mut LinkOf<S>, screen: &'t Screen) -> LocalBoxFuture<'t, Result<PartResult>> {
         Box::pin(async move {
             if self.compared.is_empty() && self.absent.is_empty() {
                 if !self.rows.is_empty() {

@@ -8,7 +8,6 @@ use super::{Store, Writable, WrittenOf, read_keys};
 use crate::prelude::basics::*;
 use crate::robot::item::as_requested;
 use crate::{Command, Context};
-use armctl_controller::similar_word::nearest;
 
 /// A row, and its new content.
 #[derive(Debug, Args)]
@@ -68,7 +67,7 @@ impl<S: Writable> Command for Set<S> {
         intent::<S>()
     }
 
-    async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>, Failure> {
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>> {
         let Context { robot, link, screen, confirmer, .. } = context;
         let key = self.row.0;
         let table = S::open(link, &self.options).await?;
@@ -78,7 +77,7 @@ impl<S: Writable> Command for Set<S> {
 }
 
 /// Parses new content from words: all values in their order, or some values as `NAME=VALUE`.
-pub fn typed<S: Writable>(table: &S, key: S::Key, words: &[String]) -> Result<S::Draft, Failure> {
+pub fn typed<S: Writable>(table: &S, key: S::Key, words: &[String]) -> Result<S::Draft> {
     let fields = table.fields();
     let row = as_requested(S::WORDS.nouns[0], &S::name(key));
     let names: Vec<&str> = fields.iter().map(|field| &*field.name).collect();

@@ -1,20 +1,17 @@
 //! Conversion between the data of a controller and the text files of a backup.
 
-use std::path::Path;
-
 use super::manifest::Controller;
 use super::parts::Part;
 use crate::easy::Numbered;
 use crate::eeprom_tables::Rows as TableRows;
 use crate::field_values::NOT_IN_MANUAL;
-use crate::link::{Link, Toyo};
 use crate::palletizing::Records;
 use crate::param::{Parameters, is_machine};
 use crate::point::Points;
 use crate::prelude::*;
 use crate::program::table::Steps;
-use crate::program::{steps, text};
-use crate::{files, number_arguments, task_selection};
+use crate::program::text;
+use crate::{files, number_arguments};
 use armctl_client::toyo::letters_request;
 use armctl_controller::findings::Finding;
 use armctl_controller::toyo::field::Field;
@@ -33,7 +30,7 @@ pub struct Text {
 }
 
 /// Reads type and version of the controller.
-pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
+pub async fn controller(link: &mut Link) -> Result<Controller> {
     let system = link.ask(&Request::bare(Command::Sysp)).await?;
     let shown = |name: &str, show: fn(&Field, &Value) -> String| {
         system
@@ -117,7 +114,7 @@ fn source(part: Part, letters: Letters) -> Source {
 }
 
 /// Reads a part. A dry run records the requests.
-pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Controller) -> Result<Text, Failure> {
+pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Controller) -> Result<Text> {
     let task = match source(part, controller.letters()) {
         Source::Table(mut table) => {
             let store::Text { text, left_out, .. } = table.read(link, screen).await?;
@@ -153,7 +150,7 @@ pub enum Content {
 
 impl Content {
     /// Reads and checks the file of a part. The axes of the machine have these letters.
-    pub fn load(part: Part, folder: &Path, letters: Letters, screen: &Screen) -> Result<Self, Failure> {
+    pub fn load(part: Part, folder: &Path, letters: Letters, screen: &Screen) -> Result<Self> {
         let path = folder.join(part.file());
         let (name, bytes) = (files::display_path(&path), files::read(&path)?);
         let file_failure = |errors: Vec<Finding>| files::file_failure(&name, &errors);

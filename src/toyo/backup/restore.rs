@@ -4,20 +4,14 @@ use super::content::{self, Content, Table};
 use super::manifest::{Controller, Manifest};
 use super::parts::Part;
 use crate::eeprom::{Cell, Cells};
-use crate::link::Toyo;
-use crate::link::{Link, wrong};
 use crate::number_arguments::saturated_byte;
 use crate::prelude::*;
-use crate::program::steps;
-use crate::task_selection;
 use armctl_controller::toyo::table::Group;
 use armctl_frame::backup::arguments::RestoreOptions;
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::manifest::{MANIFEST, Saved};
 use armctl_frame::backup::parts::{ReplacedValues, compare_all, overwriting, settle, write_all};
 use armctl_frame::backup::{NOT_CHOSEN, NOT_MACHINE, Only, RestoreReport, RestoreSelection, would_leave, would_write};
-use armctl_frame::confirmation::Confirmer;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::interrupt::interruptible;
 use armctl_frame::local_names::private_folder;
 use armctl_frame::robot::file::{FileItem, State};
@@ -74,7 +68,7 @@ impl Command for Restore {
     const INTENT: &'static str = "overwrite the data of the controller with the backup";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<RestoreReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<RestoreReport> {
         let restoring = self.options.restoring();
         let folder = private_folder(&restoring.folder, &context.robot.name, context.several);
         RestoreRequest { restoring: RestoreSelection { folder, ..restoring }, resume: self.resume }.run(context).await
@@ -82,12 +76,12 @@ impl Command for Restore {
 }
 
 /// Writes the data of a backup back to the controller.
-pub async fn restore(context: Context<'_, Toyo>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
+pub async fn restore(context: Context<'_, Toyo>, restoring: &RestoreSelection) -> Result<RestoreReport> {
     RestoreRequest { restoring: restoring.clone(), resume: None }.run(context).await
 }
 
 impl RestoreRequest {
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<RestoreReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<RestoreReport> {
         let Context { link, screen, robot, confirmer, .. } = context;
         let folder = &self.restoring.folder;
         let manifest: Manifest = manifest::open_existing(folder)?;
@@ -124,7 +118,7 @@ impl RestoreRequest {
         backup: &Controller,
         contents: Vec<(Part, Saved, Content)>,
         found: Option<&Controller>,
-    ) -> Result<Jobs, Failure> {
+    ) -> Result<Jobs> {
         let mut jobs = Jobs { machine: None, parts: Vec::new(), speed: None };
         for (part, saved, content) in contents {
             let steps = content.steps();
@@ -147,7 +141,7 @@ impl RestoreRequest {
     }
 
     /// The parts to restore, in the order of writing.
-    fn chosen(&self, manifest: &Manifest) -> Result<Vec<Part>, Failure> {
+    fn chosen(&self, manifest: &Manifest) -> Result<Vec<Part>> {
         let tasks = [1, 2, 3, 4];
         let mut parts = Part::all(&tasks, &tasks);
         parts.retain(|part| manifest.entry(&part.to_string()).is_some_and(|entry| entry.copy.is_some()));
@@ -177,7 +171,7 @@ impl RestoreRequest {
         (link, screen, confirmer): (&mut Link, &Screen, &Confirmer<'_>),
         backup: &Controller,
         contents: Vec<(Part, Saved, Content)>,
-    ) -> Result<RestoreReport, Failure> {
+    ) -> Result<RestoreReport> {
         let found = content::controller(link).await?;
         if !self.restoring.force {
             identify(backup, &found, self.restoring.machine)?;
@@ -243,7 +237,7 @@ impl RestoreRequest {
         screen: &Screen,
         manifest: &Manifest,
         jobs: Jobs,
-    ) -> Result<RestoreReport, Failure> {
+    ) -> Result<RestoreReport> {
         const ON: &str = "the comparison: armctl writes the values that differ";
         let Jobs { machine, mut parts, speed } = jobs;
         for entry in manifest.files.iter().filter(|entry| entry.copy.is_some()) {
@@ -316,7 +310,7 @@ fn percent(record: &Record) -> u8 {
 }
 
 /// Speed override of the backup.
-fn speed(backup: &Controller) -> Result<Option<Cell>, Failure> {
+fn speed(backup: &Controller) -> Result<Option<Cell>> {
     let Some(percent) = backup.speed_override_percent else { return Ok(None) };
     let values = vec![Value::Number(percent.into())];
     let wanted = table::Command::Rovr.row().answers[0].record(values.clone());
@@ -328,12 +322,7 @@ fn speed(backup: &Controller) -> Result<Option<Cell>, Failure> {
 }
 
 /// Writes the speed override if it differs.
-async fn write_speed(
-    link: &mut Link,
-    screen: &Screen,
-    cell: &Cell,
-    present: Option<u8>,
-) -> Result<PartResult, Failure> {
+async fn write_speed(link: &mut Link, screen: &Screen, cell: &Cell, present: Option<u8>) -> Result<PartResult> {
     if present.is_none_or(|present| present == percent(&cell.wanted)) {
         return Ok(PartResult { unchanged: usize::from(present.is_some()), ..PartResult::default() });
     }
@@ -344,7 +333,7 @@ async fn write_speed(
 /// Checks that the controller is the machine of the backup: its robot type (SYSP), the axes of each task (parameter
 /// E19), and the letters of the axes (parameter E01). With `machine`, E19 and E01 are restored, so they are not
 /// compared.
-fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<(), Failure> {
+fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<()> {
     let none = String::new();
     let letters = [backup, found].map(|one| one.axis_letters.as_ref());
     let marks = [
@@ -369,7 +358,7 @@ fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<()
 }
 
 /// Checks before the first write that all programs fit the tasks.
-fn check_room(jobs: &[Job], found: &Controller) -> Result<(), Failure> {
+fn check_room(jobs: &[Job], found: &Controller) -> Result<()> {
     for Job { part, steps, .. } in jobs {
         let Part::Program(task) = part else { continue };
         let room = found.task_steps[usize::from(*task) - 1];

@@ -3,15 +3,11 @@
 use super::content::{self, Text};
 use super::manifest::Controller;
 use super::parts::Part;
-use crate::link::Link;
-use crate::link::Toyo;
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_frame::backup::arguments::BackupOptions;
 use armctl_frame::backup::manifest::Entry;
 use armctl_frame::backup::save::{self, Task, interrupted_failure};
 use armctl_frame::backup::{BackupReport, Only, SaveOptions};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::file::FileItem;
 
 /// Save all data of a controller to a folder of text files.
@@ -43,18 +39,14 @@ impl Command for Backup {
         if self.current_task { Risk::Read } else { Risk::Write }
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<BackupReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<BackupReport> {
         let making = self.options.making(self.current_task.then(|| CURRENT_TASK.to_owned()));
         make(context, making, self.current_task).await
     }
 }
 
 /// Makes a backup. If nothing may be changed on the controller, the backup contains only the current task.
-pub async fn back_up(
-    context: Context<'_, Toyo>,
-    mut making: SaveOptions,
-    current_task: bool,
-) -> Result<BackupReport, Failure> {
+pub async fn back_up(context: Context<'_, Toyo>, mut making: SaveOptions, current_task: bool) -> Result<BackupReport> {
     let is_said = making.scope.iter().flatten().any(|word| word == CURRENT_TASK);
     if current_task && !making.resume && !is_said {
         making.scope.get_or_insert_default().push(CURRENT_TASK.to_owned());
@@ -62,7 +54,7 @@ pub async fn back_up(
     make(context, making, current_task).await
 }
 
-async fn make(context: Context<'_, Toyo>, making: SaveOptions, current_task: bool) -> Result<BackupReport, Failure> {
+async fn make(context: Context<'_, Toyo>, making: SaveOptions, current_task: bool) -> Result<BackupReport> {
     let Context { link, screen, robot, several, .. } = context;
     let task = Task::new(making, robot, several)?;
     if link.is_dry_run() {
@@ -76,11 +68,7 @@ async fn make(context: Context<'_, Toyo>, making: SaveOptions, current_task: boo
     task_selection::restore_task(link, outcome).await
 }
 
-async fn save(
-    link: &mut Link,
-    (screen, robot): (&Screen, &Robot),
-    task: &Task<Controller>,
-) -> Result<BackupReport, Failure> {
+async fn save(link: &mut Link, (screen, robot): (&Screen, &Robot), task: &Task<Controller>) -> Result<BackupReport> {
     let controller = content::controller(link).await?;
     let mut chosen = parts(link, &controller, task.scope.iter().any(|word| word == CURRENT_TASK)).await?;
     let only = Only::of_scope(&task.scope);
@@ -106,7 +94,7 @@ async fn save(
     list.end(chosen[tried..].iter().map(FileItem::pending))
 }
 
-async fn dry_run(link: &mut Link, current_task: bool) -> Result<BackupReport, Failure> {
+async fn dry_run(link: &mut Link, current_task: bool) -> Result<BackupReport> {
     content::plan_controller(link);
     link.plan(&Request::bare(table::Command::Mtsk), "the current task");
     let first = Parameter::named("M01").and_then(|first| Request::read_parameter(first, None).ok());
@@ -120,7 +108,7 @@ async fn dry_run(link: &mut Link, current_task: bool) -> Result<BackupReport, Fa
 }
 
 /// Parts of the controller. With `current_task`, the points and the program of the other tasks are omitted.
-async fn parts(link: &mut Link, controller: &Controller, current_task: bool) -> Result<Vec<Part>, Failure> {
+async fn parts(link: &mut Link, controller: &Controller, current_task: bool) -> Result<Vec<Part>> {
     let current = task_selection::select_task(link, None).await?;
     let wanted = |task: &u8| !current_task || *task == current;
     let points: Vec<u8> = controller.point_tasks().into_iter().filter(wanted).collect();

@@ -1,12 +1,10 @@
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
+use crate::prelude::basics::*;
 use crate::testing::{Bench, Fault, blocks};
-use armctl_frame::failure::{Failure, Kind};
 
 /// A controller with some content in each part, and a small memory.
 const FULL: &str = r#"

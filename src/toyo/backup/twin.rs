@@ -1,11 +1,8 @@
 //! Start state of a simulator from a backup.
 
-use std::path::Path;
-
 use super::content::{Content, Table};
 use super::manifest::Manifest;
 use super::parts::Part;
-use crate::link::Toyo;
 use crate::prelude::*;
 use armctl_controller::toyo::simulator::Start;
 use armctl_controller::toyo::table::parameters::PARAMETERS;
@@ -18,7 +15,7 @@ pub const UNKNOWN: &str = "a backup contains no positions of the axes, counters,
                            of a new simulator";
 
 /// Start state with the data of a backup.
-pub fn start(folder: &Path) -> Result<Start, Failure> {
+pub fn start(folder: &Path) -> Result<Start> {
     let manifest: Manifest = manifest::open_existing(folder)?;
     let screen = silent();
     let controller = &manifest.controller;

@@ -1,13 +1,10 @@
 //! Lines of the host communication in a capture file of a serial line or a device server.
 
-use std::collections::BTreeMap;
 use std::net::SocketAddr;
-use std::sync::Arc;
-use std::time::Duration;
 
 use super::FieldRow;
+use crate::prelude::basics::*;
 use armctl_controller::toyo::describe::{Sender, describe, summary};
-use armctl_controller::toyo::request::Request;
 use armctl_frame::decode::capture::{CaptureDecoder, DecodedCapture, DecodedMessage, cut, note};
 use armctl_transport::capture::{Carrier, Message};
 use armctl_transport::tap::Direction;

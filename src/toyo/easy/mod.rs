@@ -4,7 +4,6 @@ mod progress;
 
 use super::eeprom::Cell;
 use super::eeprom_tables::{self, Rows, WRITING};
-use super::link::wrong;
 use super::programs::{Copy, Kind, Select};
 use crate::prelude::*;
 use armctl_controller::toyo::field;
@@ -40,17 +39,20 @@ pub struct Numbered;
 
 impl Kind for Numbered {
     const TYPE_NAME: &'static str = "easy program";
-    const IDS: [&'static str; 2] = ["toyo.easy.copy", "toyo.easy.select"];
+    const WORD: &'static str = "easy";
+    const IDS: [&'static str; 3] = ["toyo.easy.copy", "toyo.easy.select", "toyo.run.easy"];
+    const COUNT: i64 = 8;
     const INTENT: &'static str = "overwrite an easy program";
     const HELP: [&'static str; 3] = ["Program to copy, 1 to 8", "Program to replace, 1 to 8", "Program, 1 to 8"];
     const RUN: &'static str = "toyo run easy";
-    const COMMANDS: [Command; 3] = [Command::Cesy, Command::Sesn, Command::Resd];
+    const COMMANDS: [Command; 4] = [Command::Cesy, Command::Sesn, Command::Resd, Command::Sesy];
+    const RUN_HELP: Option<&'static str> = Some("Parameter M10 selects easy mode: `armctl toyo param set M10 E`.");
 
     fn field() -> &'static field::Field {
         key()
     }
 
-    fn reads(program: i32) -> Result<Vec<Request>, Failure> {
+    fn reads(program: i32) -> Result<Vec<Request>> {
         Ok(vec![read(program)?])
     }
 }
@@ -61,12 +63,12 @@ fn key() -> &'static field::Field {
 }
 
 /// Request that reads a program.
-pub fn read(program: i32) -> Result<Request, Failure> {
+pub fn read(program: i32) -> Result<Request> {
     Request::new(Command::Resy, vec![Value::Number(program), Value::Number(0)]).map_err(|error| wrong(&error))
 }
 
 /// EEPROM cell of a program with these values.
-pub fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+pub fn cell(program: i32, values: Vec<Value>) -> Result<Cell> {
     let all: Vec<Value> = [Value::Number(program), Value::Number(0)].into_iter().chain(values).collect();
     let write = Request::new(Command::Wesy, all.clone()).map_err(|error| wrong(&error))?;
     let wanted = Command::Resy.row().answers[0].record(all).map_err(|error| wrong(&error))?;
@@ -98,11 +100,11 @@ impl eeprom_tables::Kind for Numbered {
         Layout::new("START={} LOOP={} END={}", &Command::Wesy.row().requests[0].fields[2..])
     }
 
-    fn read(program: i32) -> Result<Request, Failure> {
+    fn read(program: i32) -> Result<Request> {
         read(program)
     }
 
-    fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+    fn cell(program: i32, values: Vec<Value>) -> Result<Cell> {
         cell(program, values)
     }
 

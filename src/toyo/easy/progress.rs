@@ -1,6 +1,5 @@
 //! `toyo easy progress`.
 
-use crate::link::Toyo;
 use crate::prelude::*;
 
 /// Show the progress of the running or selected easy program.
@@ -12,7 +11,7 @@ impl Command for Progress {
     type Report = ProgressReport;
     const ID: &'static str = "toyo.easy.progress";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<ProgressReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<ProgressReport> {
         let answer = context.link.ask(&Request::bare(table::Command::Resd)).await?;
         let number = |name| answer.number(name).unwrap_or_default();
         Ok(ProgressReport {

@@ -3,11 +3,7 @@
 use super::port::{Signal, SignalRange};
 use super::read::{read, row};
 use super::{BITS, Station, list};
-use crate::complete;
-use crate::link::Toyo;
 use crate::prelude::*;
-use armctl_controller::user_input;
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, Signals, WATCHED};
 use armctl_frame::watch;
 
@@ -27,16 +23,12 @@ impl Command for Get {
     type Report = Signals;
     const ID: &'static str = "toyo.io.get";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Signals, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Signals> {
         get(&self.signals, self.station, context).await
     }
 }
 
-async fn get(
-    arguments: &[SignalRange],
-    Station { station }: Station,
-    context: Context<'_, Toyo>,
-) -> Result<Signals, Failure> {
+async fn get(arguments: &[SignalRange], Station { station }: Station, context: Context<'_, Toyo>) -> Result<Signals> {
     if station != 0 && arguments.iter().any(|signals| signals.is_named) {
         return Err(Failure::usage("names belong to ports of station 0, the controller itself")
             .hint("type the port and the bit, such as IN1.3"));
@@ -65,7 +57,7 @@ impl Command for Watched {
     type Report = Signals;
     const ID: &'static str = "toyo.io.watched";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Signals, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Signals> {
         if self.signals.is_empty() {
             return list::all(self.station, context).await;
         }

@@ -3,9 +3,7 @@
 use super::port::{PortBank, Signal};
 use super::read::{read, row};
 use super::{BITS, Station};
-use crate::link::Toyo;
 use crate::prelude::*;
-use armctl_frame::names;
 use armctl_frame::robot::io::{Filter, IoRow, Signals};
 
 /// List all ports of a station, without ports that the controller refuses.
@@ -23,7 +21,7 @@ impl Command for List {
     type Report = Signals;
     const ID: &'static str = "toyo.io.list";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Signals, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Signals> {
         let banks = PortBank::ALL.into_iter().filter(|bank| self.filter.has(bank.kind()));
         let rows = rows(banks, self.station, context).await?;
         Signals::new(rows.into_iter().filter(|row| self.filter.lists(row)).collect())
@@ -31,7 +29,7 @@ impl Command for List {
 }
 
 /// All inputs and outputs of a station.
-pub async fn all(station: Station, context: Context<'_, Toyo>) -> Result<Signals, Failure> {
+pub async fn all(station: Station, context: Context<'_, Toyo>) -> Result<Signals> {
     Signals::new(rows([PortBank::Input, PortBank::Output], station, context).await?)
 }
 
@@ -39,14 +37,14 @@ async fn rows(
     banks: impl IntoIterator<Item = PortBank>,
     Station { station }: Station,
     context: Context<'_, Toyo>,
-) -> Result<Vec<IoRow>, Failure> {
+) -> Result<Vec<IoRow>> {
     let ports =
         banks.into_iter().flat_map(|bank| (bank.first(station)..=bank.last(station)).map(move |port| (bank, port)));
     let signals: Vec<Signal> =
         ports.flat_map(|(bank, port)| (1..=8).map(move |bit| Signal { bank, port, bit })).collect();
     let names = names::of_robot(context.robot, context.screen);
     let mut bytes = read(context.link, station, &signals).await?;
-    let refused = |byte: &Result<u8, Failure>| byte.as_ref().is_err_and(|failure| failure.kind == Kind::Refused);
+    let refused = |byte: &Result<u8>| byte.as_ref().is_err_and(|failure| failure.kind == Kind::Refused);
     // A controller may have fewer ports. If it refuses all ports, this is an error.
     if !bytes.values().all(refused) {
         bytes.retain(|_, byte| !refused(byte));

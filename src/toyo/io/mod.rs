@@ -8,13 +8,11 @@
 
 mod get;
 mod list;
-mod port;
+pub mod port;
 mod read;
 mod set;
 
-pub(super) use port::{INPUTS, OUTPUTS, PortBank, ports_of};
-
-use crate::prelude::*;
+use crate::prelude::basics::*;
 
 commands! {
     /// Commands for signals.

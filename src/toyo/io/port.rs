@@ -2,11 +2,9 @@
 
 use std::str::FromStr;
 
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::names::{Kind, Names};
 use armctl_controller::toyo::names as names_of;
-use armctl_controller::user_input;
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoItem, IoKind};
 
 use super::super::number_arguments::saturated_byte;

@@ -2,18 +2,13 @@
 
 use std::str::FromStr;
 
-use super::super::link::{Link, wrong};
 use super::super::number_arguments::{number, read_back, read_back_mismatch};
 use super::super::refusal;
 use super::Station;
 use super::port::{OUTPUTS, Signal, name, ports_of};
-use crate::complete;
-use crate::link::Toyo;
 use crate::prelude::*;
 use armctl_controller::names::{Kind as NameKind, Names};
 use armctl_controller::toyo::field::{Field, Mask};
-use armctl_controller::user_input;
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, WrittenSignal, WrittenSignals};
 
 /// Set outputs. All bits of a port change at once; ports change in the typed order.
@@ -103,7 +98,7 @@ fn one_bit(number: u8, value: &str) -> Result<Mask, String> {
 
 impl Set {
     /// One assignment for each port, in the order in which the ports first occur. It is an error if a bit occurs twice.
-    fn orders(&self) -> Result<Vec<Assignment>, Failure> {
+    fn orders(&self) -> Result<Vec<Assignment>> {
         let mut orders: Vec<Assignment> = Vec::new();
         for assignment in &self.assignments {
             let Some(first_order) = orders.iter_mut().find(|order| order.port == assignment.port) else {
@@ -128,7 +123,7 @@ impl Command for Set {
     const ID: &'static str = "toyo.io.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<WrittenSignals, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<WrittenSignals> {
         let Station { station } = self.station;
         if station != 0 && self.assignments.iter().any(|assignment| assignment.is_named) {
             return Err(Failure::usage("names belong to ports of station 0, the controller itself")
@@ -177,7 +172,7 @@ impl Assignment {
     }
 
     /// Sets the port. Reads it back, if this is possible.
-    async fn set(&self, link: &mut Link, station: u8) -> Result<PortChange, Failure> {
+    async fn set(&self, link: &mut Link, station: u8) -> Result<PortChange> {
         let order = self.order(station)?;
         let Some(screen) = OUTPUTS.screen_of(station, self.port) else {
             link.ask(&order).await?;
@@ -208,7 +203,7 @@ impl Assignment {
     }
 
     /// Request that sets the port.
-    fn order(&self, station: u8) -> Result<Request, Failure> {
+    fn order(&self, station: u8) -> Result<Request> {
         let values = vec![Value::Number(station.into()), Value::Number(self.port.into()), Value::Mask(self.mask)];
         Request::new(table::Command::Dout, values).map_err(|error| wrong(&error))
     }
@@ -237,7 +232,7 @@ impl Command for Direct {
     const ID: &'static str = "toyo.io.direct";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport> {
         let values = vec![Value::Number(self.number.into())];
         let request = Request::in_form(table::Command::Dout, 1, values).map_err(|error| wrong(&error))?;
         context.link.ask(&request).await?;

@@ -1,4 +1,3 @@
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::*;
@@ -60,7 +59,7 @@ fn inching_steps_are_sent_one_by_one() {
 #[track_caller]
 fn with_faults(
     fault: impl FnMut(&str, usize) -> Fault + Send + 'static,
-) -> (Result<serde_json::Value, Failure>, ReceivedBlocks, f64) {
+) -> (Result<serde_json::Value>, ReceivedBlocks, f64) {
     let (mut bench, received) = Bench::with_faults(READY, fault);
     let outcome = bench.run(&LOW).map(|(data, _)| data);
     assert_stop_is_last(&received);

@@ -2,11 +2,11 @@
 //! that is ON, or a current task, if this user did not select it. It sends no requests; it uses the answers that
 //! commands read.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 
 use crate::change_journal::{AbandonedEntry, ChangeJournal};
 use crate::failure::restore_failed_message;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use crate::trace::Trace;
 use crate::user_choices::UserChoices;
 use armctl_client::toyo::Event;

@@ -4,16 +4,13 @@ mod progress;
 
 use std::hash::{Hash, Hasher};
 
-use super::complete;
 use super::eeprom::Cell;
 use super::eeprom_tables::{EepromRow, Listed, is_zero, unlisted};
 use super::field_values::{self, NamedValue};
 use super::item_reads::read_each;
-use super::link::{Link, Toyo, wrong};
 use super::number_arguments;
 use super::programs::{Copy, Kind, Select};
 use crate::prelude::*;
-use armctl_controller::similar_word::nearest;
 use armctl_controller::toyo::field;
 use armctl_controller::toyo::layout::Layout;
 use armctl_controller::toyo::table::palletizing::RECORDS;
@@ -49,17 +46,19 @@ pub struct Numbered;
 
 impl Kind for Numbered {
     const TYPE_NAME: &'static str = "palletizing program";
-    const IDS: [&'static str; 2] = ["toyo.palletizing.copy", "toyo.palletizing.select"];
+    const WORD: &'static str = "palletizing";
+    const IDS: [&'static str; 3] = ["toyo.palletizing.copy", "toyo.palletizing.select", "toyo.run.palletizing"];
+    const COUNT: i64 = 16;
     const INTENT: &'static str = "overwrite a palletizing program";
     const HELP: [&'static str; 3] = ["Program to copy, 1 to 16", "Program to replace, 1 to 16", "Program, 1 to 16"];
     const RUN: &'static str = "toyo run palletizing";
-    const COMMANDS: [Command; 3] = [Command::Cppl, Command::Spln, Command::Rpld];
+    const COMMANDS: [Command; 4] = [Command::Cppl, Command::Spln, Command::Rpld, Command::Ppst];
 
     fn field() -> &'static field::Field {
         field()
     }
 
-    fn reads(program: i32) -> Result<Vec<Request>, Failure> {
+    fn reads(program: i32) -> Result<Vec<Request>> {
         reads(program, &RECORDS.iter().collect::<Vec<_>>())
     }
 }
@@ -75,13 +74,13 @@ fn parse_program(text: &str) -> Result<i32, String> {
 }
 
 /// Requests that read records of a program.
-pub fn reads(program: i32, records: &[&Pallet]) -> Result<Vec<Request>, Failure> {
+pub fn reads(program: i32, records: &[&Pallet]) -> Result<Vec<Request>> {
     let read = |record: &&Pallet| Request::read_pallet(program, record);
     records.iter().map(read).collect::<Result<_, _>>().map_err(|error| wrong(&error))
 }
 
 /// EEPROM cell of a record with these values.
-pub fn cell(program: i32, record: &'static Pallet, values: Vec<Value>) -> Result<Cell, Failure> {
+pub fn cell(program: i32, record: &'static Pallet, values: Vec<Value>) -> Result<Cell> {
     Ok(Cell {
         read: Request::read_pallet(program, record).map_err(|error| wrong(&error))?,
         write: Request::write_pallet(program, record, &values).map_err(|error| wrong(&error))?,
@@ -182,7 +181,7 @@ impl Store for Records {
         record.name.to_owned()
     }
 
-    async fn open(link: &mut Link, options: &ProgramOptions) -> Result<Self, Failure> {
+    async fn open(link: &mut Link, options: &ProgramOptions) -> Result<Self> {
         Ok(Self { program: options.program, letters: link.letters().await? })
     }
 
@@ -228,7 +227,7 @@ impl Store for Records {
         unlisted(record)
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Answers<Record>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Answers<Record>> {
         let records: Vec<&Pallet> = keys.iter().map(|Key(record)| *record).collect();
         Ok(Answers::of(read_each(link, screen, "reading records", &reads(self.program, &records)?).await?))
     }
@@ -245,11 +244,11 @@ impl EepromRow for Records {
         record.layout
     }
 
-    fn request(&self, Key(record): Key) -> Result<Request, Failure> {
+    fn request(&self, Key(record): Key) -> Result<Request> {
         Request::read_pallet(self.program, record).map_err(|error| wrong(&error))
     }
 
-    fn cell(&self, Key(record): Key, values: Vec<Value>) -> Result<Cell, Failure> {
+    fn cell(&self, Key(record): Key, values: Vec<Value>) -> Result<Cell> {
         cell(self.program, record, values)
     }
 

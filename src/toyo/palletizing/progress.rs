@@ -1,6 +1,5 @@
 //! `toyo palletizing progress`.
 
-use crate::link::Toyo;
 use crate::prelude::*;
 
 /// Show the progress of the running or selected palletizing program.
@@ -12,7 +11,7 @@ impl Command for Progress {
     type Report = ProgressReport;
     const ID: &'static str = "toyo.palletizing.progress";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<ProgressReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<ProgressReport> {
         Ok(ProgressReport::of(&context.link.ask(&Request::bare(table::Command::Rpld)).await?))
     }
 }

@@ -43,7 +43,7 @@ pub fn warnings(parameter: &Parameter, stored: Option<&Record>, values: &[Value]
 }
 
 /// Checks that the new values are consistent.
-pub fn check(parameter: &Parameter, values: &[Value]) -> Result<(), Failure> {
+pub fn check(parameter: &Parameter, values: &[Value]) -> Result<()> {
     let steps = total(values);
     if is_task_steps(parameter) && steps > MAX_STEPS {
         return Err(Failure::usage(format!("all tasks together would have {steps} steps; the limit is {MAX_STEPS}"))

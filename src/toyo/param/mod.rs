@@ -6,15 +6,12 @@ pub use machine::{POWER_CYCLE, consequence_of};
 
 use std::hash::{Hash, Hasher};
 
-use super::complete;
 use super::eeprom::{Cell, parameter_cell, parameter_sketch};
 use super::eeprom_tables::{EepromRow, Listed, unlisted};
 use super::field_values::{self, NamedValue};
 use super::item_reads::{Answers as Records, read_each_with_retry};
-use super::link::{Link, Toyo, wrong};
 use super::number_arguments::Numbers;
 use crate::prelude::*;
-use armctl_controller::similar_word::nearest;
 use armctl_controller::toyo::layout::Layout;
 use armctl_controller::toyo::table::Group;
 use armctl_controller::toyo::table::parameters::PARAMETERS;
@@ -168,7 +165,7 @@ fn command_of(table: &Parameter) -> &'static str {
 
 /// Reads parameters and rows. Each has its own result. A refused read is repeated once, because a busy controller also
 /// refuses.
-pub async fn read(link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Records, Failure> {
+pub async fn read(link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Records> {
     let request = |key: &Key| Request::read_parameter(key.parameter, key.row);
     let requests = keys.iter().map(request).collect::<Result<Vec<Request>, _>>().map_err(|error| wrong(&error))?;
     let rare = |key: &Key, failure: Failure| match &failure.hint {
@@ -240,7 +237,7 @@ impl Store for Parameters {
         if key.row.is_some() { key_text(key) } else { format!("{} ({})", key.parameter.id, key.parameter.name) }
     }
 
-    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self> {
         Ok(Self)
     }
 
@@ -310,7 +307,7 @@ impl Store for Parameters {
         written.iter().any(|key| key.parameter.group() == Group::Machine).then(|| POWER_CYCLE.to_owned())
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Answers<Record>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Answers<Record>> {
         Ok(Answers::of(read(link, screen, keys).await?))
     }
 }
@@ -326,11 +323,11 @@ impl EepromRow for Parameters {
         key.parameter.body()
     }
 
-    fn request(&self, key: Key) -> Result<Request, Failure> {
+    fn request(&self, key: Key) -> Result<Request> {
         Request::read_parameter(key.parameter, key.row).map_err(|error| wrong(&error))
     }
 
-    fn cell(&self, key: Key, values: Vec<Value>) -> Result<Cell, Failure> {
+    fn cell(&self, key: Key, values: Vec<Value>) -> Result<Cell> {
         let values = key.row.map(Value::Number).into_iter().chain(values).collect();
         parameter_cell(key.parameter, values).map_err(|error| {
             Failure::usage(format!("{}: {error}", key.parameter.name))
@@ -342,7 +339,7 @@ impl EepromRow for Parameters {
         parameter_sketch(key.parameter, key.row, values)
     }
 
-    fn check(&self, key: Key, values: &[Value]) -> Result<(), Failure> {
+    fn check(&self, key: Key, values: &[Value]) -> Result<()> {
         machine::check(key.parameter, values)
     }
 }

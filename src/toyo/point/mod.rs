@@ -4,15 +4,12 @@ mod teach;
 
 pub use teach::Teach;
 
-use std::path::Path;
-
-use super::eeprom::{Cell, parameter_cell, parameter_sketch};
-use super::eeprom_tables::{EepromRow, Listed, is_zero, texts, unlisted};
+use super::eeprom::{Cell, parameter_sketch};
+use super::eeprom_tables::{EepromRow, Listed, is_zero, row_cell, texts, unlisted};
+use super::field_values;
 use super::item_reads::{Answers as Records, read_each};
-use super::link::{Link, Toyo, wrong};
 use super::number_arguments::{Numbers, named, number};
 use super::position::{Coordinates, heading};
-use super::{complete, field_values, task_selection};
 use crate::prelude::*;
 use armctl_controller::names::Kind;
 use armctl_controller::toyo::field;
@@ -32,31 +29,22 @@ pub const AXES: usize = 4;
 /// The coordinate table of a task.
 #[derive(Debug)]
 pub struct Points {
-    letters: Letters,
+    /// Letters of the axes.
+    pub letters: Letters,
     selected_task: Option<u8>,
     /// Task that the points belong to.
-    task: u8,
+    pub task: u8,
 }
 
 impl Points {
     /// The table of a task, or of the current task.
-    pub async fn of_task(link: &mut Link, task: Option<u8>) -> Result<Self, Failure> {
+    pub async fn of_task(link: &mut Link, task: Option<u8>) -> Result<Self> {
         Ok(Self { letters: link.letters().await?, selected_task: task, task: task.unwrap_or_default() })
     }
 
     /// The table of a task, on a machine whose axes have these letters.
     pub const fn with_letters(task: u8, letters: Letters) -> Self {
         Self { letters, selected_task: Some(task), task }
-    }
-
-    /// Letters of the axes.
-    pub fn letters(&self) -> Letters {
-        self.letters
-    }
-
-    /// Task of the table.
-    pub fn task(&self) -> u8 {
-        self.task
     }
 }
 
@@ -94,13 +82,13 @@ pub fn parse_point(text: &str) -> Result<i32, String> {
 }
 
 /// Request that reads a point.
-fn request(point: i32) -> Result<Request, Failure> {
+fn request(point: i32) -> Result<Request> {
     Request::read_parameter(table(), Some(point)).map_err(|error| wrong(&error))
 }
 
 /// Reads points of the selected task. Each point has its own result.
-pub async fn read(link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Records, Failure> {
-    let requests = points.iter().copied().map(request).collect::<Result<Vec<Request>, Failure>>()?;
+pub async fn read(link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Records> {
+    let requests = points.iter().copied().map(request).collect::<Result<Vec<Request>>>()?;
     read_each(link, screen, "reading points", &requests).await
 }
 
@@ -146,7 +134,7 @@ impl Store for Points {
         names_of::address_of(Kind::Point, point).unwrap_or_default()
     }
 
-    async fn open(link: &mut Link, options: &TaskOptions) -> Result<Self, Failure> {
+    async fn open(link: &mut Link, options: &TaskOptions) -> Result<Self> {
         Self::of_task(link, options.task).await
     }
 
@@ -154,12 +142,12 @@ impl Store for Points {
         if options.task.is_some() { Risk::Write } else { Risk::Read }
     }
 
-    async fn select(&mut self, link: &mut Link) -> Result<(), Failure> {
+    async fn select(&mut self, link: &mut Link) -> Result<()> {
         self.task = task_selection::select_task(link, self.selected_task).await?;
         Ok(())
     }
 
-    async fn deselect<T>(&self, link: &mut Link, outcome: Result<T, Failure>) -> Result<T, Failure> {
+    async fn deselect<T>(&self, link: &mut Link, outcome: Result<T>) -> Result<T> {
         task_selection::restore_task(link, outcome).await
     }
 
@@ -204,7 +192,7 @@ impl Store for Points {
         unlisted(record)
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Answers<Record>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Answers<Record>> {
         Ok(Answers::of(read(link, screen, points).await?))
     }
 }
@@ -214,7 +202,7 @@ impl EepromRow for Points {
         self.letters
     }
 
-    fn words(&self, words: &[String]) -> Result<Vec<String>, Failure> {
+    fn words(&self, words: &[String]) -> Result<Vec<String>> {
         let [only] = words else { return Ok(words.to_vec()) };
         let Some(file) = only.strip_prefix('@') else { return Ok(words.to_vec()) };
         let text = parse_printed_position(Path::new(file))?;
@@ -225,13 +213,12 @@ impl EepromRow for Points {
         table().body()
     }
 
-    fn request(&self, point: i32) -> Result<Request, Failure> {
+    fn request(&self, point: i32) -> Result<Request> {
         request(point)
     }
 
-    fn cell(&self, point: i32, values: Vec<Value>) -> Result<Cell, Failure> {
-        let values = std::iter::once(Value::Number(point)).chain(values).collect();
-        parameter_cell(table(), values).map_err(|error| wrong(&error))
+    fn cell(&self, point: i32, values: Vec<Value>) -> Result<Cell> {
+        row_cell(table(), point, values)
     }
 
     fn sketch(&self, point: i32, values: &[Option<Value>]) -> String {

@@ -1,14 +1,11 @@
 //! Command `toyo teach`: stores the current position as a point. `point set 5 here` and `point teach 5` are aliases.
 
 use super::{AXES, Points, TaskOptions, parse_point};
-use crate::complete;
 use crate::eeprom_tables::EepromRow as _;
 use crate::field_values::Changes;
-use crate::link::{Link, Toyo};
 use crate::position::{Coordinates, UNIT};
 use crate::prelude::*;
 use armctl_controller::toyo::table::Command as Word;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::gate::data_changed;
 use armctl_frame::store::{Store as _, Writable as _, describe_change};
 use armctl_frame::teach::TeachReport;
@@ -40,7 +37,7 @@ impl Command for Teach {
     const INTENT: &'static str = "overwrite a point";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Self::Report, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Self::Report> {
         if context.link.status_of(&[0]).await.known()?.is_some_and(|status| !status.homed()) {
             return Err(Failure::new(
                 Kind::ConditionNotMet,
@@ -57,7 +54,7 @@ impl Command for Teach {
 }
 
 impl Teach {
-    async fn teach(&self, context: Context<'_, Toyo>, points: &Points) -> Result<TeachReport, Failure> {
+    async fn teach(&self, context: Context<'_, Toyo>, points: &Points) -> Result<TeachReport> {
         let Context { link, screen, confirmer, .. } = context;
         let point = self.point;
         let current = read_position(link).await.known()?;
@@ -66,15 +63,15 @@ impl Teach {
             points.plan(link, &[(point, Changes::of(vec![None; AXES]))]).await?;
             return Err(unknown());
         };
-        let coordinates = Coordinates::of(&current, points.letters());
-        let old = Coordinates::of(&stored, points.letters());
+        let coordinates = Coordinates::of(&current, points.letters);
+        let old = Coordinates::of(&stored, points.letters);
         let axes = ["x", "y", "z", "r"].map(|axis| Value::Number(current.number(axis).unwrap_or_default()));
         let new = points.cell(point, axes.into())?.wanted;
         let needs_confirmation = confirmer.asks_user();
         let change = describe_change(points, &[(point, Some(&stored), &new)]);
         confirmer.confirm(&change).await?;
         if needs_confirmation {
-            let moved_to = Coordinates::of(&read_position(link).await?, points.letters());
+            let moved_to = Coordinates::of(&read_position(link).await?, points.letters);
             if moved_to != coordinates {
                 let message = format!("the axes moved after the confirmation, to {}", position_text(&moved_to));
                 return Err(data_changed(format!("{message}; nothing was stored")));
@@ -88,11 +85,11 @@ impl Teach {
         let name = point.to_string();
         let taught =
             TeachReport::new(name, Some(old.position()), coordinates.position(), coordinates.position().of_group(UNIT));
-        Ok(taught.unchanged(is_stored).with("point", point).with("task", points.task()))
+        Ok(taught.unchanged(is_stored).with("point", point).with("task", points.task))
     }
 }
 
 /// Reads the position of the axes.
-async fn read_position(link: &mut Link) -> Result<Record, Failure> {
+async fn read_position(link: &mut Link) -> Result<Record> {
     link.ask(&Request::bare(Word::Mpst)).await
 }

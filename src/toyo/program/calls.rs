@@ -1,10 +1,6 @@
 //! `toyo program calls`.
 
-use std::collections::BTreeSet;
-use std::path::PathBuf;
-
 use super::folder::{check_file, program_of, programs_in, read_program};
-use crate::link::Toyo;
 use crate::prelude::*;
 use armctl_controller::names::Names;
 use armctl_controller::references::Role;
@@ -37,18 +33,18 @@ impl Command for Calls {
         self.from.is_none()
     }
 
-    fn run_alone(&self) -> Result<CallReport, Failure> {
+    fn run_alone(&self) -> Result<CallReport> {
         let folder = self.from.as_deref().ok_or_else(|| Failure::local("internal error: no folder to read"))?;
         self.tree(programs_in(folder)?)
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<CallReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<CallReport> {
         self.tree(program_of(context.link, context.screen, None).await?)
     }
 }
 
 impl Calls {
-    fn tree(&self, set: ProgramSet) -> Result<CallReport, Failure> {
+    fn tree(&self, set: ProgramSet) -> Result<CallReport> {
         let mut programs = Vec::new();
         for file in &set.files {
             let checked = check_file(file, MAX_STEPS, &Names::default(), &ControllerData::default());

@@ -1,12 +1,9 @@
 //! `toyo program check`.
 
-use std::path::{Path, PathBuf};
-
 use super::folder::{add_speeds, check_file, parameters_of, points_of, program_of, programs_in, read_program};
 use super::robot_data::{RobotData, Wanted, read_data};
 use super::text;
 use crate::files;
-use crate::link::Toyo;
 use crate::point::Points;
 use crate::prelude::*;
 use crate::sim::{self, Stop};
@@ -15,7 +12,6 @@ use armctl_controller::names::{Name, Names};
 use armctl_controller::references::Role;
 use armctl_controller::toyo::errors;
 use armctl_controller::toyo::program::{self, ControllerData, MAX_STEPS};
-use armctl_frame::names;
 use armctl_frame::programs::Program;
 use armctl_frame::programs::check::{CheckArguments, CheckContext, check, moved, unused_positions};
 use armctl_frame::programs::settings::{self, CheckSettings};
@@ -71,7 +67,7 @@ impl Command for Check {
         self.files.is_empty() && self.from.is_none()
     }
 
-    fn run_alone(&self) -> Result<Verdict, Failure> {
+    fn run_alone(&self) -> Result<Verdict> {
         if let Some(folder) = &self.from {
             return self.check(programs_in(folder)?, &Source::Folder(folder.clone()), &[]);
         }
@@ -79,13 +75,13 @@ impl Command for Check {
             let file = files::display_path(path);
             Ok(ProgramFile { name: file.clone(), file, bytes: files::read(path)? })
         };
-        let files = self.files.iter().map(read).collect::<Result<_, Failure>>()?;
+        let files = self.files.iter().map(read).collect::<Result<_>>()?;
         let folder = self.files.first().and_then(|path| path.parent());
         let source = folder.map_or(Source::Nowhere, |folder| Source::Folder(folder.to_owned()));
         self.check(ProgramSet { files, is_partial: true, ..ProgramSet::default() }, &source, &[])
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Verdict, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Verdict> {
         let Context { robot, link, screen, .. } = context;
         let settings = self.limits.settings(None)?;
         let needs_data = !settings.max_speed.is_empty() || self.limits.compare.is_some();
@@ -113,7 +109,7 @@ enum Source {
 }
 
 impl Check {
-    fn check(&self, set: ProgramSet, source: &Source, names: &[Name]) -> Result<Verdict, Failure> {
+    fn check(&self, set: ProgramSet, source: &Source, names: &[Name]) -> Result<Verdict> {
         let folder = if let Source::Folder(folder) = source { Some(folder.as_path()) } else { None };
         let names = Names::new(self.name.iter().chain(names).cloned().collect());
         let mut settings = self.limits.settings(folder)?;

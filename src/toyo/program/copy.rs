@@ -2,14 +2,8 @@
 
 use super::and_mode;
 use super::insert::moved_wrong;
-use super::steps;
-use crate::link::Link;
-use crate::link::Toyo;
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_controller::toyo::program::tags;
-use armctl_frame::confirmation::Confirmer;
-use armctl_frame::dry_run::unknown;
 
 /// Copy steps over other steps, within a task or to another task.
 #[derive(Debug, Args)]
@@ -41,7 +35,7 @@ impl Command for Copy {
     const INTENT: &'static str = "overwrite program steps";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied> {
         let Context { link, screen, confirmer, .. } = context;
         if self.to < self.from {
             return Err(Failure::usage(format!("the last step {} is before the first step {}", self.to, self.from))
@@ -70,7 +64,7 @@ impl Copy {
 
     /// Returns an error if the steps and their copy overlap, because the manual does not define what the controller
     /// then does.
-    fn overlap(&self) -> Result<(), Failure> {
+    fn overlap(&self) -> Result<()> {
         if self.at > self.to || self.end() < self.from {
             return Ok(());
         }
@@ -95,7 +89,7 @@ impl Copy {
         format!("@{}", table::Command::Cpss.row().requests[0].sketch(&values).unwrap_or_default())
     }
 
-    async fn copy(&self, link: &mut Link, screen: &Screen, confirmer: &Confirmer<'_>) -> Result<Copied, Failure> {
+    async fn copy(&self, link: &mut Link, screen: &Screen, confirmer: &Confirmer<'_>) -> Result<Copied> {
         let source = task_selection::select_task(link, self.from_task).await?;
         let target = self.to_task.unwrap_or(source);
         if source == target {
@@ -140,7 +134,7 @@ impl Copy {
         }
     }
 
-    async fn dry_run(&self, link: &mut Link) -> Result<Copied, Failure> {
+    async fn dry_run(&self, link: &mut Link) -> Result<Copied> {
         task_selection::select_task(link, self.from_task).await?;
         link.plan(&steps::rooms_request(), "the number of steps of the task");
         link.plan(&steps::rooms_request(), "the number of steps of the target task");

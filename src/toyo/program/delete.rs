@@ -3,13 +3,7 @@
 use super::and_mode;
 use super::get::Step;
 use super::insert::moved_wrong;
-use super::steps;
-use crate::link::Link;
-use crate::link::Toyo;
 use crate::prelude::*;
-use crate::task_selection;
-use armctl_frame::confirmation::Confirmer;
-use armctl_frame::dry_run::unknown;
 
 /// Delete steps; later steps move up.
 #[derive(Debug, Args)]
@@ -34,7 +28,7 @@ impl Command for Delete {
     const INTENT: &'static str = "delete program steps";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Deleted, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Deleted> {
         let Context { link, screen, confirmer, .. } = context;
         let last = self.to.unwrap_or(self.step);
         if last < self.step {
@@ -71,13 +65,7 @@ impl Delete {
         steps.fold(change, Change::item).note("Later steps move up.")
     }
 
-    async fn delete(
-        &self,
-        link: &mut Link,
-        screen: &Screen,
-        confirmer: &Confirmer<'_>,
-        last: u16,
-    ) -> Result<Deleted, Failure> {
+    async fn delete(&self, link: &mut Link, screen: &Screen, confirmer: &Confirmer<'_>, last: u16) -> Result<Deleted> {
         let task = task_selection::select_task(link, self.task).await?;
         let room = steps::room(link, task, last).await?;
         let deleted = steps::read_all(link, screen, self.step..=last).await?;
@@ -97,7 +85,7 @@ impl Delete {
         Ok(Deleted { task, deleted })
     }
 
-    async fn dry_run(&self, link: &mut Link, confirmer: &Confirmer<'_>, last: u16) -> Result<Deleted, Failure> {
+    async fn dry_run(&self, link: &mut Link, confirmer: &Confirmer<'_>, last: u16) -> Result<Deleted> {
         task_selection::select_task(link, self.task).await?;
         link.plan(&steps::rooms_request(), "number of steps of the task");
         for step in self.step..=last {

@@ -1,19 +1,14 @@
 //! `toyo program diff`.
 
-use std::path::PathBuf;
-
 use super::get::Get;
 use super::text;
-use crate::link::Toyo;
+use crate::files;
 use crate::prelude::*;
-use crate::{files, task_selection};
 use armctl_controller::text::Encoding;
 use armctl_controller::toyo::program::{MAX_STEPS, check_named, used};
 use armctl_frame::backup::compare::{Compared, State};
 use armctl_frame::backup::manifest::Hash;
 use armctl_frame::backup::text_diff::{self, TextDifference};
-use armctl_frame::names;
-use armctl_frame::output::csv::RowsOf;
 use armctl_frame::robot::file::{FILES, FileItem};
 
 /// Compare a program in the controller with a text file. The exit code is 8 if they differ.
@@ -48,7 +43,7 @@ impl Command for Diff {
         if self.task().is_some() { Risk::Write } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Difference, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Difference> {
         let Context { robot, link, screen, .. } = context;
         let name = files::display_path(&self.file);
         let bytes = files::read(&self.file)?;

@@ -1,15 +1,10 @@
 //! `toyo program edit`: edits the program of a task in the editor of the user and writes it back.
 
-use std::collections::BTreeMap;
-
 use super::and_mode;
 use super::get::Get;
 use super::put::{Put, Stored};
-use super::steps;
 use crate::item_reads::Answers;
-use crate::link::Toyo;
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_controller::text::Encoding;
 use armctl_controller::toyo::program::{Rows, Style, listing_with};
 use armctl_frame::backup::text_diff::{self, Hunk, TextDifference};
@@ -36,7 +31,7 @@ impl Command for Edit {
     const INTENT: &'static str = "overwrite steps of a program";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<EditedProgram, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<EditedProgram> {
         let Context { robot, link, screen, several, confirmer } = context;
         if several {
             return Err(Failure::usage("the editor needs one robot").hint("select the robot with -r"));

@@ -1,17 +1,11 @@
 //! Programs of a folder or of the controller, for commands that read whole programs.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-
 use super::get::Get;
 use crate::backup::Controller;
-use crate::link::Link;
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_controller::names::Names;
 use armctl_controller::references::ProgrammedSpeed;
 use armctl_controller::toyo::program::{self, Checked, ControllerData, NOT_IN_MANUAL, Rows, Style};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::programs::source::{FolderFilter, ProgramFile, ProgramSet, read_folder};
 use armctl_frame::programs::{Line, Program};
 
@@ -27,7 +21,7 @@ fn is_program(name: &str) -> bool {
 ///
 /// # Errors
 /// A file cannot be read, or the folder has no programs.
-pub fn programs_in(folder: &Path) -> Result<ProgramSet, Failure> {
+pub fn programs_in(folder: &Path) -> Result<ProgramSet> {
     let (mut set, manifest) = read_folder::<Controller>(folder, PROGRAMS)?;
     for file in &mut set.files {
         file.name = file.name.trim_end_matches(".txt").to_owned();
@@ -42,14 +36,14 @@ pub fn programs_in(folder: &Path) -> Result<ProgramSet, Failure> {
 ///
 /// # Errors
 /// A step cannot be read. In a dry run, the requests are recorded.
-pub async fn program_of(link: &mut Link, screen: &Screen, task: Option<u8>) -> Result<ProgramSet, Failure> {
+pub async fn program_of(link: &mut Link, screen: &Screen, task: Option<u8>) -> Result<ProgramSet> {
     let get = Get::whole(task);
     if link.is_dry_run() {
         return get.dry_run(link).await.and_then(|_| Err(unknown()));
     }
     let outcome = get.read(link, screen).await;
     let (task, _, answers) = task_selection::restore_task(link, outcome).await?;
-    let steps = answers.into_iter().collect::<Result<Vec<Record>, Failure>>()?;
+    let steps = answers.into_iter().collect::<Result<Vec<Record>>>()?;
     let style = Style { first: 1, is_whole: true, is_numbered: false };
     let bytes = program::listing(&steps, style, &Rows::new()).text.into_bytes();
     let name = format!("program-{task}");

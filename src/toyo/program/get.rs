@@ -1,21 +1,14 @@
 //! `toyo program get`.
 
-use std::path::PathBuf;
-
 use super::source_texts::Source;
-use super::steps;
 use crate::item_reads::Answers;
-use crate::link::{Link, Toyo, misuse};
+use crate::link::misuse;
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_controller::toyo::program::{self, Rows, Style, Unread, listing_named, not_read};
 use armctl_controller::toyo::table::Op;
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::items::{ItemOutcome, verdict};
 use armctl_frame::local_names::Target;
-use armctl_frame::names;
-use armctl_frame::output::csv::RowsOf;
 use armctl_frame::output::escape;
 use armctl_frame::robot::file::FileItem;
 use armctl_frame::robot::item::Plain;
@@ -82,7 +75,7 @@ impl Command for Get {
         if self.task.is_some() { Risk::Write } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Got, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Got> {
         let Context { robot, link, screen, several, .. } = context;
         if let Some(to) = self.to.filter(|to| *to < self.from) {
             return Err(Failure::usage(format!("--to {to} is before --from {}", self.from))
@@ -129,7 +122,7 @@ impl Command for Get {
         let file = FileItem::new(format!("program-{task}"), Plain {}, written).with_content(Hash::of(text.as_bytes()));
         let file = target.iter().fold(file, |file, target| file.with_path(target.path()));
         let shown = if is_whole { program::used(&read) } else { read.len() };
-        let step = |(step, answer): (u16, Result<Record, Failure>)| {
+        let step = |(step, answer): (u16, Result<Record>)| {
             let outcome = answer.map(|record| Instruction::of(&record));
             ReadStep { step, outcome: ItemOutcome::new(format!("step {step}"), outcome) }
         };
@@ -171,7 +164,7 @@ impl Get {
     }
 
     /// Reads the steps. Returns their task, the number of steps of this task, and each step.
-    pub async fn read(&self, link: &mut Link, screen: &Screen) -> Result<(u8, u16, Answers), Failure> {
+    pub async fn read(&self, link: &mut Link, screen: &Screen) -> Result<(u8, u16, Answers)> {
         let task = task_selection::select_task(link, self.task).await?;
         let room = steps::room(link, task, self.to.unwrap_or(self.from)).await?;
         let is_end = |record: &Record| self.until_end && record.layout() == Op::End.row().layout;
@@ -180,7 +173,7 @@ impl Get {
     }
 
     /// Records the requests in a dry run.
-    pub async fn dry_run(&self, link: &mut Link) -> Result<Got, Failure> {
+    pub async fn dry_run(&self, link: &mut Link) -> Result<Got> {
         task_selection::select_task(link, self.task).await?;
         link.plan(&steps::rooms_request(), "number of steps of the task");
         link.plan(&steps::read_request(self.from), "the first step");
@@ -215,7 +208,7 @@ fn unread(answers: &Answers) -> Unread {
 }
 
 /// Table rows that the steps use. Rows that the controller refuses are omitted.
-async fn rows(link: &mut Link, steps: &[Record]) -> Result<Rows, Failure> {
+async fn rows(link: &mut Link, steps: &[Record]) -> Result<Rows> {
     let mut rows = Rows::new();
     for (id, row) in program::uses(steps) {
         let parameter =

@@ -2,18 +2,10 @@
 
 use super::and_mode;
 use super::get::Step;
-use super::steps;
-use crate::complete;
 use crate::eeprom::{Cells, STORED_VALUE};
-use crate::link::Link;
-use crate::link::Toyo;
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_controller::names::Names;
 use armctl_controller::toyo::program::{Part, check_named};
-use armctl_frame::confirmation::Confirmer;
-use armctl_frame::dry_run::unknown;
-use armctl_frame::names;
 
 /// Insert a step. The number of each later step increases by one.
 #[derive(Debug, Args)]
@@ -39,7 +31,7 @@ impl Command for Insert {
     const INTENT: &'static str = "insert a program step";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Inserted, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Inserted> {
         let Context { robot, link, screen, confirmer, .. } = context;
         let instruction = self.instruction(names::of_robot(robot, screen))?;
         if link.is_dry_run() {
@@ -52,7 +44,7 @@ impl Command for Insert {
 
 impl Insert {
     /// Parses the instruction. A tag that it uses is not checked, because the tag can be anywhere in the program.
-    fn instruction(&self, names: &Names) -> Result<Record, Failure> {
+    fn instruction(&self, names: &Names) -> Result<Record> {
         let text = self.instruction.join(" ");
         let part = Part { first: self.step.into(), tags: None };
         let checked = check_named(text.as_bytes(), 1, Some(&part), names);
@@ -80,7 +72,7 @@ impl Insert {
         screen: &Screen,
         confirmer: &Confirmer<'_>,
         instruction: &Record,
-    ) -> Result<Inserted, Failure> {
+    ) -> Result<Inserted> {
         let step = self.step;
         let task = task_selection::select_task(link, self.task).await?;
         let room = steps::room(link, task, step).await?;
@@ -112,12 +104,7 @@ impl Insert {
         Change::new(format!("insert a step before step {step} of task {task}")).item(behind)
     }
 
-    async fn dry_run(
-        &self,
-        link: &mut Link,
-        confirmer: &Confirmer<'_>,
-        instruction: &Record,
-    ) -> Result<Inserted, Failure> {
+    async fn dry_run(&self, link: &mut Link, confirmer: &Confirmer<'_>, instruction: &Record) -> Result<Inserted> {
         task_selection::select_task(link, self.task).await?;
         link.plan(&steps::rooms_request(), "number of steps of the task");
         link.plan(&steps::read_request(self.step), "the steps that move");

@@ -1,12 +1,7 @@
 //! `toyo program list`.
 
-use super::steps;
-use crate::link::Link;
-use crate::link::Toyo;
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_controller::toyo::program::{tags, used};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::items::{ItemError, verdict};
 
 /// List the tasks, with the number of steps of each task.
@@ -30,7 +25,7 @@ impl Command for List {
         if self.used { Risk::Write } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Listed, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Listed> {
         let Context { link, screen, .. } = context;
         if link.is_dry_run() {
             task_selection::select_task(link, None).await?;
@@ -46,7 +41,7 @@ impl Command for List {
 }
 
 impl List {
-    async fn list(&self, link: &mut Link, screen: &Screen) -> Result<Listed, Failure> {
+    async fn list(&self, link: &mut Link, screen: &Screen) -> Result<Listed> {
         let current = task_selection::select_task(link, None).await?;
         let mut tasks = Vec::new();
         for (task, room) in (1..).zip(steps::rooms(link).await?) {

@@ -1,14 +1,11 @@
 //! `toyo program show --path`: the motion of a program, as the offline simulator runs it.
 
-use std::collections::{BTreeMap, HashSet};
-use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::collections::HashSet;
 
 use super::folder::{check_file, parameters_of, points_of, program_of, programs_in};
 use super::robot_data::{RobotData, Wanted, read_data};
 use super::show::Show;
 use crate::files;
-use crate::link::Toyo;
 use crate::prelude::*;
 use armctl_controller::findings::Finding;
 use armctl_controller::names::Names;
@@ -64,22 +61,19 @@ impl Command for ProgramPath {
     type Family = Toyo;
     type Report = PathReport;
     const ID: &'static str = "toyo.program.path";
+    const USES_FILES: bool = true;
 
     fn risk(&self) -> Risk {
         if self.takes_robot() && self.task().is_some() { Risk::Write } else { Risk::Read }
     }
 
     fn takes_robot(&self) -> bool {
-        self.options.from().is_none() && (self.show.program.is_none() || self.task().is_some())
+        self.options.from.is_none() && (self.show.program.is_none() || self.task().is_some())
     }
 
-    fn uses_files(&self) -> bool {
-        true
-    }
-
-    fn run_alone(&self) -> Result<PathReport, Failure> {
+    fn run_alone(&self) -> Result<PathReport> {
         self.options.check(false)?;
-        let source = match (self.options.from(), &self.show.program) {
+        let source = match (self.options.from.as_deref(), &self.show.program) {
             (Some(folder), _) => of_folder(folder, &format!("program-{}", self.task().unwrap_or(1)))?,
             (None, program) => {
                 let path = PathBuf::from(program.as_deref().unwrap_or("-"));
@@ -91,7 +85,7 @@ impl Command for ProgramPath {
         self.report(&source)
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<PathReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<PathReport> {
         let Context { link, screen, several, .. } = context;
         self.options.check(several)?;
         let set = program_of(link, screen, self.task()).await?;
@@ -116,8 +110,8 @@ impl ProgramPath {
         self.show.program.as_ref()?.parse().ok().filter(|task| (1..=4).contains(task))
     }
 
-    fn report(&self, source: &Source) -> Result<PathReport, Failure> {
-        let old = match self.options.compare() {
+    fn report(&self, source: &Source) -> Result<PathReport> {
+        let old = match self.options.compare.as_deref() {
             Some(folder) => {
                 let name = if source.name.starts_with("program-") { source.name.as_str() } else { "program-1" };
                 Some(motion(&of_folder(folder, name)?)?)
@@ -129,7 +123,7 @@ impl ProgramPath {
 }
 
 /// A program of a backup, with its points and parameters.
-fn of_folder(folder: &Path, name: &str) -> Result<Source, Failure> {
+fn of_folder(folder: &Path, name: &str) -> Result<Source> {
     let set = programs_in(folder)?;
     let found = set.files.into_iter().find(|file| file.name == name);
     let file = found.ok_or_else(|| {
@@ -142,7 +136,7 @@ fn of_folder(folder: &Path, name: &str) -> Result<Source, Failure> {
     Ok(Source { has_all_points, ..of_file(file, points.as_deref(), parameters.as_deref())? })
 }
 
-fn of_file(file: ProgramFile, points: Option<&Path>, parameters: Option<&Path>) -> Result<Source, Failure> {
+fn of_file(file: ProgramFile, points: Option<&Path>, parameters: Option<&Path>) -> Result<Source> {
     let program = parse(&file)?;
     Ok(Source {
         lines: lines(&file),
@@ -164,14 +158,14 @@ fn lines(file: &ProgramFile) -> Vec<String> {
     String::from_utf8_lossy(&file.bytes).lines().map(|line| line.trim().to_owned()).collect()
 }
 
-fn parse(file: &ProgramFile) -> Result<Program, Failure> {
+fn parse(file: &ProgramFile) -> Result<Program> {
     let checked = check_file(file, MAX_STEPS, &Names::default(), &ControllerData::default());
     let errors: Vec<Finding> = checked.errors().cloned().collect();
     checked.program.ok_or_else(|| files::file_failure(&file.file, &errors))
 }
 
 /// Runs a program in the simulator and records its path.
-fn motion(source: &Source) -> Result<Motion, Failure> {
+fn motion(source: &Source) -> Result<Motion> {
     let Source { name, program, lines, data, has_parameters, .. } = source;
     // Without parameters, all axes belong to task 1.
     let task = if *has_parameters { source.task } else { 1 };
@@ -198,7 +192,7 @@ fn motion(source: &Source) -> Result<Motion, Failure> {
                 text: step.text(),
                 reason: "the program of another task".to_owned(),
             });
-            *record = super::steps::nop();
+            *record = steps::nop();
         }
     }
     // Where a motion with PASS ends depends on its start. The start of the first motion is not known.

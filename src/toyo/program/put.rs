@@ -1,26 +1,17 @@
 //! `toyo program put`.
 
-use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
 
 use super::and_mode;
 use super::check::Labelled;
-use super::steps;
 use super::text;
 use crate::eeprom::{Cells, STORED_VALUE};
-use crate::link::Link;
-use crate::link::Toyo;
+use crate::files;
 use crate::prelude::*;
-use crate::{files, task_selection};
 use armctl_controller::names::Names;
 use armctl_controller::toyo::program::{self, MAX_STEPS, Part, Program, check_named};
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::confirmation::Confirmer;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::interrupt::interruptible;
-use armctl_frame::names;
-use armctl_frame::output::csv::RowsOf;
 use armctl_frame::robot::file::{FILES, FileItem};
 use armctl_frame::robot::item::Plain;
 
@@ -77,7 +68,7 @@ impl Command for Put {
     const INTENT: &'static str = "overwrite a program";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored> {
         let Context { robot, link, screen, confirmer, .. } = context;
         let name = self.name();
         let bytes = files::read(&self.file)?;
@@ -118,7 +109,7 @@ impl Put {
         (bytes, names): (&[u8], &Names),
         program: &Program,
         steps: RangeInclusive<u16>,
-    ) -> Result<Stored, Failure> {
+    ) -> Result<Stored> {
         let name = self.name();
         let first = self.at.unwrap_or(1);
         let (from, last) = (*steps.start(), *steps.end());
@@ -202,7 +193,7 @@ impl Put {
         task: u8,
         program: &Program,
         (from, last, end): (u16, u16, u16),
-    ) -> Result<Vec<Record>, Failure> {
+    ) -> Result<Vec<Record>> {
         let whole = from == 1 && end > last && !self.read_all;
         let steps = records(program);
         let source = link.sources.get(task).filter(|source| whole && source.has_all_steps(&steps, end));
@@ -227,7 +218,7 @@ impl Put {
         }
     }
 
-    async fn dry_run(&self, link: &mut Link, program: &Program, from: u16) -> Result<Stored, Failure> {
+    async fn dry_run(&self, link: &mut Link, program: &Program, from: u16) -> Result<Stored> {
         let first = self.at.unwrap_or(1);
         let last = last_of(first, program);
         task_selection::select_task(link, self.task).await?;
@@ -289,13 +280,7 @@ fn part(at: u16, tags: Option<BTreeSet<i32>>) -> Part {
 }
 
 /// Reads the tags of the steps before and after a part.
-async fn tags_around(
-    link: &mut Link,
-    screen: &Screen,
-    first: u16,
-    last: u16,
-    room: u16,
-) -> Result<BTreeSet<i32>, Failure> {
+async fn tags_around(link: &mut Link, screen: &Screen, first: u16, last: u16, room: u16) -> Result<BTreeSet<i32>> {
     let mut around = steps::read_all(link, screen, 1..=first - 1).await?;
     around.extend(steps::read_all(link, screen, last + 1..=room).await?);
     Ok(program::tags(&around, 1).into_keys().collect())

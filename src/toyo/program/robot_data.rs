@@ -1,15 +1,10 @@
 //! Points, groups and tables that programs use, of a backup or of the controller, as commands that write them.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
-
 use crate::eeprom_tables::{EepromRow as _, is_zero, texts};
 use crate::item_reads::read_each;
-use crate::link::{Link, wrong};
 use crate::point::{Points, table};
 use crate::prelude::*;
 use crate::sim::{in_file, parameter_writes};
-use crate::task_selection;
 use armctl_controller::names::Kind;
 use armctl_controller::toyo::names;
 use armctl_controller::toyo::program::{Program, uses};
@@ -42,7 +37,7 @@ impl RobotData {
     ///
     /// # Errors
     /// A file cannot be read or is invalid.
-    pub fn of_files(points: Option<&Path>, parameters: Option<&Path>) -> Result<Self, Failure> {
+    pub fn of_files(points: Option<&Path>, parameters: Option<&Path>) -> Result<Self> {
         let mut data = Self::default();
         data.add(parameters.map(parameter_writes).transpose()?.unwrap_or_default());
         let table = Points::with_letters(1, Letters::USUAL);
@@ -147,7 +142,7 @@ pub async fn read_data(
     task: Option<u8>,
     program: &Program,
     wanted: Wanted,
-) -> Result<RobotData, Failure> {
+) -> Result<RobotData> {
     let mut data = RobotData::default();
     let records = records_of(program);
     let rows = uses(&records);
@@ -176,11 +171,11 @@ async fn read_writes(
     screen: &Screen,
     what: &str,
     wanted: Vec<(&'static Parameter, Option<i32>)>,
-) -> Result<Vec<String>, Failure> {
+) -> Result<Vec<String>> {
     let requests = wanted.iter().map(|(parameter, row)| Request::read_parameter(parameter, *row));
     let requests: Vec<Request> = requests.collect::<Result<_, _>>().map_err(|error| wrong(&error))?;
     let answers = read_each(link, screen, what, &requests).await?;
-    let write = |((parameter, _), answer): ((&Parameter, _), Result<Record, Failure>)| {
+    let write = |((parameter, _), answer): ((&Parameter, _), Result<Record>)| {
         let record = answer.ok().filter(Record::is_listed)?;
         Request::write_parameter(parameter, record.values()).ok().map(|request| request.text())
     };

@@ -1,22 +1,13 @@
 //! `toyo program search`.
 
-use std::path::PathBuf;
-
 use super::folder::{check_file, program_of, programs_in, read_program};
-use super::steps;
-use crate::link::Link;
-use crate::link::Toyo;
 use crate::prelude::*;
 use crate::refusal;
-use crate::task_selection;
 use crate::wait::status_page;
 use armctl_client::toyo::Refusal;
 use armctl_controller::names::{Kind as NameKind, NameMatch, Names};
 use armctl_controller::toyo::program::{ControllerData, MAX_STEPS, name_of};
 use armctl_controller::toyo::table::Op;
-use armctl_frame::dry_run::unknown;
-use armctl_frame::names;
-use armctl_frame::output::csv::RowsOf;
 use armctl_frame::programs::Program;
 use armctl_frame::programs::search::{Matches, SearchArguments};
 use armctl_frame::programs::source::ProgramSet;
@@ -58,12 +49,12 @@ impl Command for Search {
         self.from.is_none()
     }
 
-    fn run_alone(&self) -> Result<SearchReport, Failure> {
+    fn run_alone(&self) -> Result<SearchReport> {
         let folder = self.from.as_deref().ok_or_else(|| Failure::local("internal error: no folder to read"))?;
         self.lines(programs_in(folder)?, &Names::default())
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<SearchReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SearchReport> {
         let Context { link, screen, robot, .. } = context;
         let Some(tag) = self.tag() else {
             let set = program_of(link, screen, self.task).await?;
@@ -94,18 +85,18 @@ impl Search {
         number.filter(|number| (1..=999).contains(number))
     }
 
-    fn lines(&self, set: ProgramSet, names: &Names) -> Result<SearchReport, Failure> {
+    fn lines(&self, set: ProgramSet, names: &Names) -> Result<SearchReport> {
         let parse = |file| read_program(file, &check_file(file, MAX_STEPS, names, &ControllerData::default()));
         let programs: Vec<Program> = set.files.iter().map(parse).collect();
         let kinds = [NameKind::Point, NameKind::Counter, NameKind::Timer, NameKind::Input, NameKind::Output];
-        let objects = self.search.uses().map(|text| match names.find(&kinds, text) {
+        let objects = self.search.uses.as_deref().map(|text| match names.find(&kinds, text) {
             NameMatch::One(name) => name.address.clone(),
             _ => name_of(text),
         });
         self.search.search(&programs, objects.as_slice(), set.unread).map(SearchReport::Lines)
     }
 
-    async fn find_tag(&self, link: &mut Link, tag: u16) -> Result<TagStep, Failure> {
+    async fn find_tag(&self, link: &mut Link, tag: u16) -> Result<TagStep> {
         let task = task_selection::select_task(link, self.task).await?;
         let status = link.status_of(&[0]).await?;
         if status.executing() || status.paused() {

@@ -1,13 +1,8 @@
 //! `toyo program show`.
 
-use std::path::PathBuf;
-
-use super::steps;
-use crate::link::Toyo;
 use crate::prelude::*;
 use crate::refusal;
 use armctl_client::toyo::Refusal;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::program::Program;
 
 /// Show the current step of the program of the current task.
@@ -39,7 +34,7 @@ impl Command for Show {
     type Report = Current;
     const ID: &'static str = "toyo.program.show";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Current, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Current> {
         let link = context.link;
         let (which, request) = (Request::bare(table::Command::Mtsk), steps::read_request(0));
         if link.is_dry_run() {

@@ -4,17 +4,15 @@
 //! were made from it. If a text cannot be saved or read, labels and comments are lost, but nothing else.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 use jiff::Timestamp;
 use serde::Deserialize;
 use sha2::{Digest as _, Sha256};
 
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::toyo::program::{tags, used};
 use armctl_controller::toyo::request::instruction;
 use armctl_controller::toyo::table::Op;
-use armctl_files as files;
 use armctl_frame::local_names::state_folder;
 
 /// First word of each file.

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use crate::eeprom::Cell;
 use crate::item_reads::{Answers, read_until};
-use crate::link::{Link, Refusal, misuse};
+use crate::link::{Refusal, misuse};
 use crate::prelude::*;
 use armctl_controller::toyo::request::Answer;
 use armctl_controller::toyo::status::RunMode;
@@ -13,7 +13,7 @@ use armctl_controller::toyo::table::{Command, Op};
 const READING: &str = "reading steps";
 
 /// Reads the number of steps of each task (TO 2-4, parameter E22).
-pub async fn rooms(link: &mut Link) -> Result<[u16; 4], Failure> {
+pub async fn rooms(link: &mut Link) -> Result<[u16; 4]> {
     let record = link.ask(&rooms_request()).await?;
     let room = |task| record.number(task).and_then(|steps| u16::try_from(steps).ok()).unwrap_or_default();
     Ok(["task1", "task2", "task3", "task4"].map(room))
@@ -26,7 +26,7 @@ pub fn rooms_request() -> Request {
 }
 
 /// Number of steps of a task. Fails if a command needs a step beyond it, up to `last`.
-pub async fn room(link: &mut Link, task: u8, last: u16) -> Result<u16, Failure> {
+pub async fn room(link: &mut Link, task: u8, last: u16) -> Result<u16> {
     let room = rooms(link).await?.get(usize::from(task) - 1).copied().unwrap_or_default();
     if last <= room {
         return Ok(room);
@@ -42,7 +42,7 @@ pub fn read_request(step: u16) -> Request {
 }
 
 /// Reads a step with its number. Step 0 is the current step. A refusal is a valid result.
-pub async fn numbered(link: &mut Link, step: u16) -> Result<Result<Record, Refusal>, Failure> {
+pub async fn numbered(link: &mut Link, step: u16) -> Result<Result<Record, Refusal>> {
     let request = read_request(step);
     Ok(match link.raw(&request).await? {
         Answer::Data(record) => Ok(record),
@@ -56,13 +56,13 @@ pub async fn read_each(
     screen: &Screen,
     steps: RangeInclusive<u16>,
     is_last: impl Fn(&Record) -> bool,
-) -> Result<Answers, Failure> {
+) -> Result<Answers> {
     let requests: Vec<Request> = steps.map(read_request).collect();
     read_until(link, screen, READING, &requests, is_last).await
 }
 
 /// Reads all steps of a range before they are overwritten. A missing answer is a failure.
-pub async fn read_all(link: &mut Link, screen: &Screen, steps: RangeInclusive<u16>) -> Result<Vec<Record>, Failure> {
+pub async fn read_all(link: &mut Link, screen: &Screen, steps: RangeInclusive<u16>) -> Result<Vec<Record>> {
     let mut read = Vec::with_capacity(steps.len());
     let mut progress = screen.items_progress(READING, steps.len() as u64);
     for step in steps {
@@ -73,7 +73,7 @@ pub async fn read_all(link: &mut Link, screen: &Screen, steps: RangeInclusive<u1
 }
 
 /// EEPROM cell of a step.
-pub fn cell(step: u16, instruction: &Record) -> Result<Cell, Failure> {
+pub fn cell(step: u16, instruction: &Record) -> Result<Cell> {
     let write = Request::write_step(step.into(), instruction).map_err(|error| misuse(&error.into()))?;
     Ok(Cell { read: read_request(step), write, wanted: instruction.clone() })
 }
@@ -94,7 +94,7 @@ pub fn nop() -> Record {
 }
 
 /// Prepares for writes of steps: checks that nothing runs, and selects program mode temporarily.
-pub async fn open(link: &mut Link) -> Result<(), Failure> {
+pub async fn open(link: &mut Link) -> Result<()> {
     let status = link.status_of(&[0, 2]).await?;
     let busy = |what: &str, hint: &str| {
         Err(Failure::new(Kind::Rejected, format!("{what}, so armctl cannot write steps")).hint(hint))
@@ -120,7 +120,7 @@ pub async fn open(link: &mut Link) -> Result<(), Failure> {
 }
 
 /// In a dry run, records the requests of [`open`].
-pub async fn plan_open(link: &mut Link) -> Result<(), Failure> {
+pub async fn plan_open(link: &mut Link) -> Result<()> {
     let page = |page| Request::of(Command::Stas, [Value::Number(page)]);
     link.plan(&page(0), "whether a program runs");
     link.plan(&page(2), "the current mode");

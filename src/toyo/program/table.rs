@@ -1,12 +1,9 @@
 //! The steps of a task as a table, for restores.
 
-use super::steps;
 use crate::eeprom::Cells;
 use crate::field_values::NOT_IN_MANUAL;
 use crate::item_reads::read_each;
-use crate::link::{Link, Toyo};
 use crate::prelude::*;
-use crate::task_selection;
 use armctl_controller::toyo::table::Op;
 use armctl_frame::robot::item::Plain;
 use armctl_frame::store::Row;
@@ -44,15 +41,15 @@ impl Store for Steps {
         step.to_string()
     }
 
-    async fn open(link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+    async fn open(link: &mut Link, _options: &Single) -> Result<Self> {
         Ok(Self::of_task(task_selection::select_task(link, None).await?))
     }
 
-    async fn select(&mut self, link: &mut Link) -> Result<(), Failure> {
+    async fn select(&mut self, link: &mut Link) -> Result<()> {
         task_selection::select_task(link, Some(self.task)).await.map(|_| ())
     }
 
-    async fn deselect<T>(&self, link: &mut Link, outcome: Result<T, Failure>) -> Result<T, Failure> {
+    async fn deselect<T>(&self, link: &mut Link, outcome: Result<T>) -> Result<T> {
         task_selection::restore_task(link, outcome).await
     }
 
@@ -80,7 +77,7 @@ impl Store for Steps {
         step.layout() == Op::Nop.row().layout
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, steps: &[u16]) -> Result<Answers<Record>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, steps: &[u16]) -> Result<Answers<Record>> {
         let requests: Vec<_> = steps.iter().copied().map(steps::read_request).collect();
         Ok(Answers::of(read_each(link, screen, "reading steps", &requests).await?))
     }
@@ -97,7 +94,7 @@ impl Writable for Steps {
 
     /// A step that the manual does not list cannot be written. If the controller has another step there, the result
     /// would be a different program, so nothing of the program is written.
-    fn complete_draft(&self, step: u16, wanted: &Record, old: Option<&Record>) -> Result<Record, Failure> {
+    fn complete_draft(&self, step: u16, wanted: &Record, old: Option<&Record>) -> Result<Record> {
         let (text, found) = (wanted.written(), old.map(Record::written).unwrap_or_default());
         match old {
             Some(old) if !wanted.is_listed() && text == found => Ok(old.clone()),
@@ -114,7 +111,7 @@ impl Writable for Steps {
         }
     }
 
-    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<()> {
         for (step, instruction) in rows.iter().filter(|(_, instruction)| instruction.is_listed()) {
             let cell = steps::cell(*step, instruction)?;
             link.plan_overwriting(&cell.read, &cell.write.text()).await?;
@@ -122,7 +119,7 @@ impl Writable for Steps {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<()> {
         for (step, _, instruction) in rows {
             link.overwrite(screen, &steps::cell(*step, instruction)?, &mut Cells::default()).await?;
         }

@@ -1,10 +1,8 @@
-use std::path::PathBuf;
-
 use serde_json::Value;
 use tempfile::TempDir;
 
+use crate::prelude::basics::*;
 use crate::testing::{Bench, blocks, without_robot};
-use armctl_frame::failure::{Failure, Kind};
 
 /// The program in the sample session of the manual (TO 3-1).
 const SAMPLE: &str = "SPD V=5\nMOVP a PT=1 CN=0 S V=0 POST\nOUT STN=0 PN1=.......1\nEND\n";
@@ -33,7 +31,7 @@ impl Workspace {
         path.to_str().unwrap().to_owned()
     }
 
-    fn put(&mut self, text: &str, more: &[&str]) -> Result<Value, Failure> {
+    fn put(&mut self, text: &str, more: &[&str]) -> Result<Value> {
         let file = self.file(text);
         self.bench.run(&[&["program", "put", &file], more].concat()).map(|(data, _)| data)
     }

@@ -5,7 +5,6 @@ use crate::prelude::*;
 use armctl_controller::names::Name;
 use armctl_controller::toyo::program::{Checked, Finding, Program, Severity};
 use armctl_frame::settings::inventory;
-use armctl_frame::settings::target::Family;
 
 /// Parses a name with its address on a command line, for example `pick=PT1`.
 pub fn name(text: &str) -> Result<Name, String> {
@@ -14,7 +13,7 @@ pub fn name(text: &str) -> Result<Name, String> {
 }
 
 /// Program of a text that was checked. Warnings are printed on stderr. If there are errors, fails.
-pub fn program(name: &str, checked: Checked, screen: &Screen) -> Result<Program, Failure> {
+pub fn program(name: &str, checked: Checked, screen: &Screen) -> Result<Program> {
     valid(name, &checked)?;
     for finding in checked.findings.iter().filter(|finding| finding.severity == Severity::Warning) {
         screen.note(&in_a_line(name, finding));
@@ -23,7 +22,7 @@ pub fn program(name: &str, checked: Checked, screen: &Screen) -> Result<Program,
 }
 
 /// Fails with all errors of a text that is not a valid program.
-pub fn valid(name: &str, checked: &Checked) -> Result<(), Failure> {
+pub fn valid(name: &str, checked: &Checked) -> Result<()> {
     let errors: Vec<Finding> = checked.errors().cloned().collect();
     if errors.is_empty() { Ok(()) } else { Err(files::file_failure(name, &errors)) }
 }
@@ -39,7 +38,6 @@ fn in_a_line(name: &str, finding: &Finding) -> String {
 mod tests {
     use super::*;
     use armctl_controller::toyo::program::{MAX_STEPS, check};
-    use armctl_frame::failure::Kind;
 
     fn screen() -> Screen {
         Screen::new(armctl_frame::output::Format::Json, armctl_frame::output::ColorChoice::Never, true, 0)

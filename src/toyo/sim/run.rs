@@ -1,8 +1,5 @@
 //! `toyo sim run`.
 
-use std::path::{Path, PathBuf};
-use std::time::Duration;
-
 use super::trace::{End, Recorder, Source, Stop, Trace};
 use crate::eeprom_tables::EepromRow;
 use crate::field_values::Changes;
@@ -15,7 +12,6 @@ use armctl_controller::names::{Name, Names};
 use armctl_controller::toyo::program::{MAX_STEPS, Program, check_named};
 use armctl_controller::toyo::simulator::{Simulator, Start, What};
 use armctl_frame::OfflineCommand;
-use armctl_frame::settings::duration;
 use armctl_frame::store::rows_of_file;
 
 /// Run a program in the simulator in virtual time, and print steps, outputs and positions.
@@ -122,7 +118,7 @@ impl OfflineCommand for Run {
     type Report = Trace;
     const ID: &'static str = "toyo.sim.run";
 
-    fn run(&self, screen: &Screen) -> Result<Trace, Failure> {
+    fn run(&self, screen: &Screen) -> Result<Trace> {
         let names = Names::new(self.name.clone());
         let mut sources = vec![source(screen, &names, 1, &self.file)?];
         for (task, file) in &self.task {
@@ -140,7 +136,7 @@ impl OfflineCommand for Run {
 
 /// Location at which a controller with these points stops the program with an error. The program runs for up to some
 /// seconds.
-pub fn rehearse(file: &str, program: &Program, points: Option<&Path>) -> Result<Option<Stop>, Failure> {
+pub fn rehearse(file: &str, program: &Program, points: Option<&Path>) -> Result<Option<Stop>> {
     let run = Run {
         file: PathBuf::new(),
         task: Vec::new(),
@@ -155,12 +151,12 @@ pub fn rehearse(file: &str, program: &Program, points: Option<&Path>) -> Result<
         rows: 0,
     };
     let sources = vec![Source { task: 1, file: file.to_owned(), program: program.clone() }];
-    run.trace(sources).map(|trace| trace.stop().cloned())
+    run.trace(sources).map(|trace| trace.stop)
 }
 
 impl Run {
     /// Runs the programs and returns the trace.
-    fn trace(&self, sources: Vec<Source>) -> Result<Trace, Failure> {
+    fn trace(&self, sources: Vec<Source>) -> Result<Trace> {
         let start = self.start(&sources)?;
         let mut simulator = Simulator::new(start);
         simulator.record_trace(true);
@@ -172,7 +168,7 @@ impl Run {
     }
 
     /// Start state with the programs.
-    fn start(&self, sources: &[Source]) -> Result<Start, Failure> {
+    fn start(&self, sources: &[Source]) -> Result<Start> {
         let state = match &self.state {
             Some(path) => {
                 let bytes = files::read(path)?;
@@ -268,7 +264,7 @@ impl Run {
 }
 
 /// Returns the protocol commands that write the parameters of a file.
-pub fn parameter_writes(path: &Path) -> Result<Vec<String>, Failure> {
+pub fn parameter_writes(path: &Path) -> Result<Vec<String>> {
     let mut start = Start::default();
     let mut commands = Vec::new();
     let mut rows = rows_of_file(&Parameters, path)?;
@@ -284,7 +280,7 @@ pub fn parameter_writes(path: &Path) -> Result<Vec<String>, Failure> {
 }
 
 /// All values for a row of a file.
-fn whole(path: &Path, row: &str, changes: &Changes) -> Result<Vec<Value>, Failure> {
+fn whole(path: &Path, row: &str, changes: &Changes) -> Result<Vec<Value>> {
     changes.whole().ok_or_else(|| in_file(path, &format!("{row}: values are missing")))
 }
 
@@ -310,7 +306,7 @@ fn place(state: &mut toml::Table, task: usize, point: i32, values: &[Value]) {
 }
 
 /// Reads the program in a file.
-fn source(screen: &Screen, names: &Names, task: usize, file: &Path) -> Result<Source, Failure> {
+fn source(screen: &Screen, names: &Names, task: usize, file: &Path) -> Result<Source> {
     let name = files::display_path(file);
     let bytes = files::read(file)?;
     Ok(Source { task, program: text::program(&name, check_named(&bytes, MAX_STEPS, None, names), screen)?, file: name })

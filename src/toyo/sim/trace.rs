@@ -1,7 +1,6 @@
 //! Trace of the events in a simulated run.
 
-use std::collections::{BTreeMap, VecDeque};
-use std::time::Duration;
+use std::collections::VecDeque;
 
 use crate::explain::alarm_from_code;
 use crate::position::Coordinates;
@@ -11,7 +10,6 @@ use armctl_controller::toyo::program::Program;
 use armctl_controller::toyo::request::instruction;
 use armctl_controller::toyo::simulator::{Event, State, What};
 use armctl_controller::toyo::table::{Instruction, Op};
-use armctl_frame::output::csv::RowsOf;
 use armctl_frame::robot::alarm::Alarm;
 
 /// The program of a task, with its file.
@@ -73,15 +71,9 @@ pub struct Trace {
     rows_left_out: usize,
     #[serde(skip)]
     failure: Option<Failure>,
-    #[serde(skip)]
-    stop: Option<Stop>,
-}
-
-impl Trace {
     /// Location in task 1 at which the controller stopped with an error, or at which every task waited.
-    pub fn stop(&self) -> Option<&Stop> {
-        self.stop.as_ref()
-    }
+    #[serde(skip)]
+    pub stop: Option<Stop>,
 }
 
 /// Location of an error or of an endless wait.

@@ -1,11 +1,10 @@
 //! Alarm reports and their display.
 
 use crate::link::Link;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::yerc::payload;
 use armctl_frame::robot::alarm::{Alarm, AlarmEntry, AlarmState, ExtraColumns, Kind};
 use armctl_frame::settings::alarms::Origin;
-use armctl_frame::settings::target::Family;
 
 /// Whether the report contains the sub-code texts of the controller.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -87,7 +86,7 @@ pub(super) async fn explain(
     entry: AlarmEntry<YercAlarmFields>,
     robot: &Robot,
     link: &mut Link,
-) -> Result<AlarmEntry<YercAlarmFields>, Failure> {
+) -> Result<AlarmEntry<YercAlarmFields>> {
     let code = entry.alarm.code.clone().unwrap_or_default();
     let find =
         |model| robot.alarms.find(Origin { family: Family::Yerc, robot: Some(&robot.name), model: Some(model) }, &code);

@@ -3,8 +3,6 @@
 use super::manifest::Controller;
 use super::name::{self, ReportedName, type_word};
 use super::transfer::{self, Download};
-use crate::link::Link;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::text::hex;
 use armctl_controller::yerc::files;
@@ -16,7 +14,7 @@ use armctl_frame::local_names::{LocalNames, Target};
 use armctl_frame::robot::file::FileItem;
 
 /// Makes a backup.
-pub async fn back_up(context: Context<'_, Yerc>, making: SaveOptions) -> Result<BackupReport, Failure> {
+pub async fn back_up(context: Context<'_, Yerc>, making: SaveOptions) -> Result<BackupReport> {
     let Context { link, screen, robot, several, .. } = context;
     let task = Task::new(making, robot, several)?;
     if link.is_dry_run() {
@@ -33,14 +31,10 @@ pub async fn back_up(context: Context<'_, Yerc>, making: SaveOptions) -> Result<
 struct Listed {
     kind: FileType,
     name: Vec<u8>,
-    local: Result<String, Failure>,
+    local: Result<String>,
 }
 
-async fn save(
-    link: &mut Link,
-    (screen, robot): (&Screen, &Robot),
-    task: &Task<Controller>,
-) -> Result<BackupReport, Failure> {
+async fn save(link: &mut Link, (screen, robot): (&Screen, &Robot), task: &Task<Controller>) -> Result<BackupReport> {
     let only = Only::of_scope(&task.scope);
     let controller = Controller::ask(link).await?;
     let (mut work, mut refused) = (Vec::new(), Vec::new());

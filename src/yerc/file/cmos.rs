@@ -5,20 +5,13 @@
 //! request is sent once more. If it has data, this is already the file. The request is never repeated automatically,
 //! because that could create a second backup.
 
-use std::path::PathBuf;
-use std::time::Duration;
-
 use super::transfer;
-use crate::link::Link;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::yerc::files;
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::local_names::{Target, folder_of, make_folder, private_folder};
 use armctl_frame::output::progress::Progress;
 use armctl_frame::robot::file::{FileItem, Files, State};
-use armctl_frame::settings::duration;
 
 /// Creates and downloads the batch backup.
 #[derive(Debug, Args)]
@@ -46,7 +39,7 @@ impl Command for Cmos {
     const ID: &'static str = "yerc.file.cmos";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files> {
         let Context { link, screen, robot, several, .. } = context;
         let Some(file) = self.file.as_deref().filter(|_| !self.start_only) else {
             return self.start(link, screen).await;
@@ -75,7 +68,7 @@ impl Command for Cmos {
 }
 
 impl Cmos {
-    async fn start(&self, link: &mut Link, screen: &Screen) -> Result<Files, Failure> {
+    async fn start(&self, link: &mut Link, screen: &Screen) -> Result<Files> {
         let _waiting = Waiting::new(screen, CREATE_TIMEOUT);
         // The transfer is ended at its first block, so that the controller keeps the backup that exists.
         let existed = |_: &[u8]| {
@@ -86,7 +79,7 @@ impl Cmos {
         Ok(created_files(FileItem::pending(NAME)))
     }
 
-    async fn make_and_fetch(&self, link: &mut Link, screen: &Screen, target: &Target) -> Result<Files, Failure> {
+    async fn make_and_fetch(&self, link: &mut Link, screen: &Screen, target: &Target) -> Result<Files> {
         let (mut draft, mut hash) = (target.begin()?, Hash::default());
         let requests = if self.download_only { &[FETCHING][..] } else { &[CREATE_TIMEOUT, FETCHING] };
         for what in requests {
@@ -107,11 +100,7 @@ impl Cmos {
         ))
     }
 
-    async fn ask(
-        &self,
-        link: &mut Link,
-        handle_block: impl FnMut(&[u8]) -> Result<(), Failure>,
-    ) -> Result<Option<u64>, Failure> {
+    async fn ask(&self, link: &mut Link, handle_block: impl FnMut(&[u8]) -> Result<()>) -> Result<Option<u64>> {
         transfer::fetch_backup(link, self.wait, handle_block).await.map_err(|failure| match failure.kind {
             Kind::OutcomeUnknown => failure.hint(
                 "wait, because the controller may still be busy; then use --download-only, or set a longer --wait",

@@ -3,13 +3,9 @@
 
 use std::fs::File;
 use std::io::{ErrorKind, Read as _, Seek as _};
-use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
-
-use armctl_files as files;
+use crate::prelude::basics::*;
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::failure::Failure;
 
 /// Size of a piece. It contains a few blocks.
 const READ_SIZE: usize = 1 << 13;
@@ -22,7 +18,8 @@ pub struct Content {
     /// Number of bytes to send.
     len: u64,
     fixes: bool,
-    job_name: Option<Vec<u8>>,
+    /// Name in the line `//NAME` of a job that was checked.
+    pub job_name: Option<Vec<u8>>,
 }
 
 /// What [`Content::check_job`] does with an invalid job.
@@ -36,7 +33,7 @@ pub struct JobRules {
 
 impl Content {
     /// Opens a file to send. The file must not be empty.
-    pub fn open(path: &Path) -> Result<Self, Failure> {
+    pub fn open(path: &Path) -> Result<Self> {
         let content = Self::open_file(path)?;
         if content.len == 0 {
             return Err(Failure::usage(format!("{} is empty", path.display()))
@@ -46,7 +43,7 @@ impl Content {
     }
 
     /// Opens a file for reading.
-    pub fn open_file(path: &Path) -> Result<Self, Failure> {
+    pub fn open_file(path: &Path) -> Result<Self> {
         let place = || path.display().to_string();
         let file = match files::open(path) {
             Err(error) if matches!(error.kind(), ErrorKind::IsADirectory | ErrorKind::Unsupported) => {
@@ -70,18 +67,13 @@ impl Content {
         self.len
     }
 
-    /// Name in the line `//NAME` of a job that was checked.
-    pub fn job_name(&self) -> Option<&[u8]> {
-        self.job_name.as_deref()
-    }
-
     /// Whether line endings are converted.
     pub fn fixes_line_endings(&self) -> bool {
         self.fixes
     }
 
     /// Checks a job before it is sent.
-    pub fn check_job(&mut self, rules: JobRules) -> Result<(), Failure> {
+    pub fn check_job(&mut self, rules: JobRules) -> Result<()> {
         let mut scan = JobScan::default();
         let mut pieces = self.pieces()?;
         loop {
@@ -111,7 +103,7 @@ impl Content {
     }
 
     /// Reader for the pieces of the file, from its beginning.
-    pub fn pieces(&mut self) -> Result<ContentReader<'_>, Failure> {
+    pub fn pieces(&mut self) -> Result<ContentReader<'_>> {
         self.file.rewind().with_context(|| self.path.display().to_string())?;
         let fixer = self.fixes.then(Fixer::default);
         Ok(ContentReader { file: &self.file, path: &self.path, fixer, hash: Hash::default() })
@@ -130,7 +122,7 @@ pub struct ContentReader<'a> {
 
 impl ContentReader<'_> {
     /// Returns the next piece, which is empty at the end.
-    pub fn next_piece(&mut self) -> Result<Vec<u8>, Failure> {
+    pub fn next_piece(&mut self) -> Result<Vec<u8>> {
         let mut piece = Vec::with_capacity(READ_SIZE);
         let read = self.file.take(READ_SIZE as u64).read_to_end(&mut piece);
         read.with_context(|| self.path.display().to_string())?;
@@ -268,7 +260,7 @@ mod tests {
         std::iter::from_fn(|| Some(pieces.next_piece().unwrap()).filter(|piece| !piece.is_empty())).flatten().collect()
     }
 
-    fn check(bytes: &[u8], rules: JobRules) -> Result<Vec<u8>, Failure> {
+    fn check(bytes: &[u8], rules: JobRules) -> Result<Vec<u8>> {
         let (_file, mut content) = content(bytes);
         content.check_job(rules)?;
         let sent = read(&mut content);
@@ -290,7 +282,7 @@ mod tests {
     fn reads_the_name_of_a_job() {
         let (_file, mut content) = content(b"/JOB\r\n//NAME A B\r\nNOP\r\nEND\r\n//NAME C\r\n");
         content.check_job(JobRules::default()).unwrap();
-        assert_eq!(content.job_name(), Some(&b"A B"[..]));
+        assert_eq!(content.job_name.as_deref(), Some(&b"A B"[..]));
     }
 
     #[test]

@@ -3,8 +3,6 @@
 use super::existence::{Existence, Lists};
 use super::name::{self, ReportedName};
 use super::transfer;
-use crate::complete;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_frame::robot::file::{FileItem, Files};
 
@@ -29,7 +27,7 @@ impl Command for Delete {
     const INTENT: &'static str = "delete files";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files> {
         let Context { link, confirmer, .. } = context;
         let files = name::parse_names(link.encoding, &self.names)?;
         let pending = |file: &FileName| ReportedName::new(link.encoding, file.as_bytes()).pending();

@@ -1,20 +1,15 @@
 //! `yerc file diff`: shows the changes that an upload of the local file would make.
 
-use std::path::{Path, PathBuf};
-
 use super::compare::{Comparer, Comparison};
 use super::content::Content;
 use super::name::{self, ReportedName};
 use super::transfer;
-use crate::complete;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_frame::backup::compare::{Compared, State};
 use armctl_frame::backup::job_date::{DATE_LINE, align_files};
 use armctl_frame::backup::manifest::Hash;
 use armctl_frame::backup::text_diff::{self, Change, Ending, MAX_TEXT, TextDifference};
 use armctl_frame::local_names::{local_name, private_folder};
-use armctl_frame::output::csv::RowsOf;
 use armctl_frame::robot::file::{FILES, FileItem};
 
 /// Compares a file on the controller with a local file.
@@ -38,12 +33,9 @@ impl Command for Diff {
     type Family = Yerc;
     type Report = Difference;
     const ID: &'static str = "yerc.file.diff";
+    const USES_FILES: bool = true;
 
-    fn uses_files(&self) -> bool {
-        true
-    }
-
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Difference, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Difference> {
         let Context { link, screen, robot, several, .. } = context;
         let file = name::parse_name(link.encoding, &self.name)?;
         let local = self.local.clone().unwrap_or_else(|| {
@@ -192,7 +184,6 @@ impl Report for Difference {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_controller::text::Encoding;
     use armctl_frame::output::render;
 
     fn difference(theirs: &[u8], ours: &[u8]) -> Difference {

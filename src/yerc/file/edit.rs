@@ -4,13 +4,10 @@ use super::content::{Content, JobRules};
 use super::name::{self, ReportedName};
 use super::transfer;
 use super::upload::{Delivery, UploadOptions, upload};
-use crate::complete;
-use crate::link::{Link, Yerc};
 use crate::prelude::*;
 use armctl_controller::yerc::query::{Query as _, ReadJob, ReadStatus};
 use armctl_frame::backup::job_date::align_files;
 use armctl_frame::backup::text_diff::{self, Change as LineChange, DiffLine, Hunk, MAX_TEXT, TextDifference};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::editor_session::EditedText;
 use armctl_frame::local_names::local_name;
 
@@ -40,7 +37,7 @@ impl Command for Edit {
     const INTENT: &'static str = "overwrite a job with the edited text";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, mut context: Context<'_, Yerc>) -> Result<EditedJob, Failure> {
+    async fn run(&self, mut context: Context<'_, Yerc>) -> Result<EditedJob> {
         let encoding = context.link.encoding;
         if context.several {
             return Err(Failure::usage("job edit works on one job of one robot").hint("select the robot with -r"));
@@ -78,7 +75,7 @@ impl Edit {
         file: &FileName,
         (old, form): (&[u8], TextForm),
         edited: &EditedText,
-    ) -> Result<EditedJob, Failure> {
+    ) -> Result<EditedJob> {
         let (link, screen) = (&mut *context.link, context.screen);
         let shown = ReportedName::new(link.encoding, file.as_bytes());
         if !edited.is_changed()? {
@@ -93,7 +90,7 @@ impl Edit {
             return Err(Failure::usage(format!("the job has //NAME {own}, but its name is {sent}"))
                 .hint("rename a job on the pendant, or send it as a new job with `yerc file put`"));
         }
-        if delivery.content.job_name().is_none() {
+        if delivery.content.job_name.is_none() {
             return Err(Failure::usage("the line //NAME is missing").hint(
                 "add the line //NAME with the name of the job; without it, the controller would refuse the job",
             ));
@@ -149,7 +146,7 @@ impl TextForm {
         }
     }
 
-    fn encode_text(self, edited: &[u8]) -> Result<Vec<u8>, Failure> {
+    fn encode_text(self, edited: &[u8]) -> Result<Vec<u8>> {
         let Self::Text(encoding) = self else { return Ok(edited.to_vec()) };
         let text = std::str::from_utf8(edited)
             .map_err(|_| Failure::usage("the edited job is not UTF-8").hint("save the job as UTF-8 in the editor"))?;
@@ -168,7 +165,7 @@ impl TextForm {
     }
 }
 
-async fn fetch(link: &mut Link, screen: &Screen, file: &FileName) -> Result<Vec<u8>, Failure> {
+async fn fetch(link: &mut Link, screen: &Screen, file: &FileName) -> Result<Vec<u8>> {
     let name = link.encoding.decode(file.as_bytes());
     let mut progress = screen.bytes_progress(&name, None);
     let mut bytes = Vec::new();
@@ -187,7 +184,7 @@ async fn fetch(link: &mut Link, screen: &Screen, file: &FileName) -> Result<Vec<
 }
 
 /// Rejects the edit while a job runs. A running job must not be overwritten.
-async fn check_idle(link: &mut Link, file: &FileName) -> Result<(), Failure> {
+async fn check_idle(link: &mut Link, file: &FileName) -> Result<()> {
     if !link.ask(&ReadStatus).await?.running() {
         return Ok(());
     }
@@ -207,7 +204,7 @@ async fn check_idle(link: &mut Link, file: &FileName) -> Result<(), Failure> {
     Ok(())
 }
 
-fn plan(link: &mut Link, file: &FileName) -> Result<EditedJob, Failure> {
+fn plan(link: &mut Link, file: &FileName) -> Result<EditedJob> {
     link.plan_download(&file.save(), Reason::about("content of the job, for the editor"))?;
     let if_changed = |about| Reason::about(about).depending_on("whether the job was changed in the editor");
     link.plan_if(&ReadStatus.request(), if_changed("whether a job runs"));

@@ -2,7 +2,6 @@
 //! files that will be overwritten or deleted.
 
 use super::transfer;
-use crate::link::Link;
 use crate::prelude::*;
 use armctl_controller::yerc::files;
 use armctl_frame::backup::continues_after;
@@ -24,10 +23,7 @@ pub struct Lists(Vec<(FileType, Option<Vec<Vec<u8>>>)>);
 
 impl Lists {
     /// Reads the lists for these files. In a dry run, records the requests and returns `None`.
-    pub async fn ask<'a>(
-        link: &mut Link,
-        is_asked: impl IntoIterator<Item = &'a FileName>,
-    ) -> Result<Option<Self>, Failure> {
+    pub async fn ask<'a>(link: &mut Link, is_asked: impl IntoIterator<Item = &'a FileName>) -> Result<Option<Self>> {
         let mut types: Vec<FileType> = Vec::new();
         for kind in is_asked.into_iter().filter_map(FileName::file_type) {
             if !types.contains(&kind) {

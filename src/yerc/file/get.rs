@@ -1,15 +1,9 @@
 //! `yerc file get` (FS and DX 3.4.3).
 
-use std::path::{Path, PathBuf};
-
 use super::name;
 use super::pattern::{self, FilePattern, is_pattern};
 use super::transfer::{self, Download};
-use crate::complete;
-use crate::link::Link;
-use crate::link::Yerc;
 use crate::prelude::*;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::local_names::{LocalNames, Target, make_folder, private_folder};
 use armctl_frame::output::escape;
 use armctl_frame::robot::file::{FileItem, Files};
@@ -33,7 +27,7 @@ impl Command for Get {
     type Report = Files;
     const ID: &'static str = "yerc.file.get";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files> {
         let Context { link, screen, robot, several, .. } = context;
         let to_stdout = self.dir == Path::new("-");
         if to_stdout {
@@ -92,7 +86,7 @@ impl Command for Get {
 }
 
 impl Get {
-    fn check_stdout(&self, screen: Screen, several: bool) -> Result<(), Failure> {
+    fn check_stdout(&self, screen: Screen, several: bool) -> Result<()> {
         if self.names.len() > 1 || self.names.iter().any(|name| is_pattern(name)) || several {
             return Err(Failure::usage("--dir - writes one file of one robot").hint("use a folder for several files"));
         }
@@ -105,13 +99,13 @@ impl Get {
 }
 
 /// Target path of each file. All paths are checked before the first download.
-fn targets(encoding: Encoding, files: &[FileName], folder: &Path, force: bool) -> Result<Vec<Target>, Failure> {
+fn targets(encoding: Encoding, files: &[FileName], folder: &Path, force: bool) -> Result<Vec<Target>> {
     let mut names = LocalNames::new(encoding);
     let target = |file: &FileName| Target::new(folder.join(names.assign(file.as_bytes())?), force);
     files.iter().map(target).collect()
 }
 
-async fn print(link: &mut Link, screen: &Screen, file: &FileName) -> Result<(), Failure> {
+async fn print(link: &mut Link, screen: &Screen, file: &FileName) -> Result<()> {
     let mut out = Printer::new(screen, link.encoding);
     let name = link.encoding.decode(file.as_bytes());
     let result = transfer::fetch(link, file, |block| out.take(block)).await;
@@ -136,7 +130,7 @@ impl<'a> Printer<'a> {
         Self { screen, encoding, is_text: screen.is_stdout_terminal(), pending: Vec::new() }
     }
 
-    fn take(&mut self, block: &[u8]) -> Result<(), Failure> {
+    fn take(&mut self, block: &[u8]) -> Result<()> {
         self.pending.extend_from_slice(block);
         if self.pending.len() < BATCH {
             return Ok(());
@@ -151,7 +145,7 @@ impl<'a> Printer<'a> {
         Ok(())
     }
 
-    fn flush(&mut self) -> Result<(), Failure> {
+    fn flush(&mut self) -> Result<()> {
         let bytes = std::mem::take(&mut self.pending);
         if !self.is_text {
             return self.screen.bytes(&bytes);

@@ -2,7 +2,6 @@
 
 use super::name::{ReportedName, TypeArg, name_of_type, type_word};
 use super::transfer;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::yerc::files;
 use armctl_frame::backup;
@@ -29,7 +28,7 @@ impl Command for List {
     type Report = Files<Listed>;
     const ID: &'static str = "yerc.file.list";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files<Listed>, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files<Listed>> {
         let Context { link, screen, .. } = context;
         let filters = match &self.filter {
             Some(filter) => vec![(filter.clone(), None)],

@@ -3,13 +3,11 @@
 use serde::Deserialize;
 
 use super::name::exact;
-use crate::link::Link;
 use crate::prelude::*;
 use armctl_controller::text::unhex;
 use armctl_controller::yerc::query::{ReadSystemInfo, SystemPart};
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::manifest::{About, Entry};
-use armctl_frame::settings::target::Family;
 
 /// Manifest of a backup.
 pub type Manifest = manifest::Manifest<Controller>;
@@ -29,7 +27,7 @@ pub struct Controller {
 
 impl Controller {
     /// Reads the description from the controller.
-    pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
+    pub async fn ask(link: &mut Link) -> Result<Self> {
         let question = Self::question()?;
         let info = match link.ask(&question).await {
             Ok(info) => Some(info),
@@ -57,7 +55,7 @@ impl Controller {
     }
 
     /// Request that [`ask`](Self::ask) sends.
-    pub fn question() -> Result<ReadSystemInfo, Failure> {
+    pub fn question() -> Result<ReadSystemInfo> {
         // The request is the same for each model, and its answer also identifies the model.
         ReadSystemInfo::new(Model::Dx200, SystemPart::Group(Group::R1))
             .map_err(|error| Failure::local(error.to_string()))
@@ -73,6 +71,6 @@ impl About for Controller {
 }
 
 /// Name on the controller of the file of an entry.
-pub fn controller_file(entry: &Entry) -> Result<FileName, Failure> {
+pub fn controller_file(entry: &Entry) -> Result<FileName> {
     exact(entry.name_hex.as_deref().and_then(unhex).unwrap_or_default())
 }

@@ -1,7 +1,5 @@
 //! Names and types of files in arguments and in reports.
 
-use clap::ValueEnum;
-
 use crate::prelude::*;
 use armctl_controller::text::unhex;
 use armctl_frame::robot::file::FileItem;
@@ -89,7 +87,7 @@ pub fn type_word(kind: FileType) -> &'static str {
 }
 
 /// Parses a file argument: text in the robot's encoding, or `hex:` followed by bytes.
-pub fn parse_name(encoding: Encoding, text: &str) -> Result<FileName, Failure> {
+pub fn parse_name(encoding: Encoding, text: &str) -> Result<FileName> {
     let bytes = if let Some(digits) = text.strip_prefix("hex:") {
         unhex(digits).ok_or_else(|| {
             Failure::usage(format!("'{text}' has an incomplete hexadecimal byte"))
@@ -105,7 +103,7 @@ pub fn parse_name(encoding: Encoding, text: &str) -> Result<FileName, Failure> {
 }
 
 /// Checks that a name is allowed for an upload.
-pub fn name_to_send(file: FileName) -> Result<FileName, Failure> {
+pub fn name_to_send(file: FileName) -> Result<FileName> {
     match file.check_load() {
         Ok(()) => Ok(file),
         Err(error) => Err(Failure::usage(error.to_string()).hint("use a job name such as TESTJOB.JBI")),
@@ -113,7 +111,7 @@ pub fn name_to_send(file: FileName) -> Result<FileName, Failure> {
 }
 
 /// Parses several file arguments, and rejects duplicates.
-pub fn parse_names(encoding: Encoding, texts: &[String]) -> Result<Vec<FileName>, Failure> {
+pub fn parse_names(encoding: Encoding, texts: &[String]) -> Result<Vec<FileName>> {
     let mut files = Vec::with_capacity(texts.len());
     for text in texts {
         let file = parse_name(encoding, text)?;
@@ -126,7 +124,7 @@ pub fn parse_names(encoding: Encoding, texts: &[String]) -> Result<Vec<FileName>
 }
 
 /// Checks that a name has no wildcards. A controller might match `*` or `?` with any name, and delete too many files.
-pub fn exact(bytes: Vec<u8>) -> Result<FileName, Failure> {
+pub fn exact(bytes: Vec<u8>) -> Result<FileName> {
     if bytes.iter().any(|byte| matches!(byte, b'*' | b'?')) {
         return Err(Failure::usage(format!("the file name '{}' contains * or ?", bytes.escape_ascii()))
             .hint("use full file names (see `yerc file list`); only `yerc file get` accepts patterns"));

@@ -1,12 +1,9 @@
 //! `yerc file put` (FS and DX 3.4.2).
 
-use std::path::{Path, PathBuf};
-
 use super::content::{Content, JobRules};
 use super::existence::{Existence, Lists};
 use super::name::{self, ReportedName};
 use super::upload::{self, Delivery, UploadOptions, upload};
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_frame::local_names::controller_name;
 use armctl_frame::robot::file::{FileItem, Files};
@@ -51,7 +48,7 @@ impl Command for Put {
     const INTENT: &'static str = "overwrite files of the same name";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files> {
         let Context { link, screen, confirmer, .. } = context;
         let mut deliveries = self.deliveries(link.encoding)?;
         let mut results: Vec<FileItem> = Vec::with_capacity(deliveries.len());
@@ -92,7 +89,7 @@ impl Command for Put {
 
 impl Put {
     /// All files to upload. They are checked before the first upload.
-    fn deliveries(&self, encoding: Encoding) -> Result<Vec<Delivery>, Failure> {
+    fn deliveries(&self, encoding: Encoding) -> Result<Vec<Delivery>> {
         if self.name.is_some() && self.files.len() > 1 {
             return Err(Failure::usage("--as needs exactly one file").hint("send the files one by one"));
         }
@@ -122,7 +119,7 @@ impl Put {
 }
 
 /// File name on the controller for a local file.
-fn named_after(encoding: Encoding, path: &Path) -> Result<FileName, Failure> {
+fn named_after(encoding: Encoding, path: &Path) -> Result<FileName> {
     let invalid = |why: String| {
         Failure::usage(format!("{}: {why}", path.display())).hint("set the name on the controller with --as")
     };

@@ -2,7 +2,6 @@
 
 use super::existence::{Existence, Lists};
 use super::transfer;
-use crate::link::Link;
 use crate::prelude::*;
 use armctl_frame::backup::continues_after;
 
@@ -24,11 +23,11 @@ pub async fn read_files(
     screen: &Screen,
     names: &[&str],
     most: u64,
-) -> Result<Option<Vec<FileReading>>, Failure> {
+) -> Result<Option<Vec<FileReading>>> {
     let files = names
         .iter()
         .map(|name| FileName::new(*name).map_err(|error| Failure::local(format!("internal error: {name}: {error}"))));
-    let files = files.collect::<Result<Vec<FileName>, Failure>>()?;
+    let files = files.collect::<Result<Vec<FileName>>>()?;
     let looking = screen.spinner("looking for files");
     let Some(lists) = Lists::ask(link, &files).await? else {
         transfer::plan_all(link, "if the controller has the file", files.iter().map(FileName::save))?;

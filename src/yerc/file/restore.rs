@@ -1,22 +1,15 @@
 //! `yerc restore`: uploads the files of a backup.
 
-use std::path::PathBuf;
-
-use serde_json::Value;
-
 use super::content::Content;
 use super::existence::{Existence, Lists};
 use super::manifest::{Manifest, controller_file};
 use super::name::ReportedName;
 use super::transfer;
 use super::upload::{self, Delivery, UploadOptions, upload};
-use crate::link::Link;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::manifest::Entry;
 use armctl_frame::backup::{NOT_CHOSEN, Only, RestoreReport, RestoreSelection, would_leave, would_write};
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::local_names::private_folder;
 use armctl_frame::robot::file::{FileItem, State};
 
@@ -57,7 +50,7 @@ impl Restore {
     }
 
     /// Sends the files that differ.
-    pub async fn run(&self, context: Context<'_, Yerc>) -> Result<RestoreReport, Failure> {
+    pub async fn run(&self, context: Context<'_, Yerc>) -> Result<RestoreReport> {
         let Context { link, screen, robot, several, confirmer } = context;
         let folder = private_folder(&self.folder, &robot.name, several);
         manifest::check_origin(&manifest::open_existing::<Value>(&folder)?, robot, self.force)?;
@@ -135,7 +128,7 @@ impl Restore {
     }
 
     /// Files to send, in the order of sending.
-    fn select_entries<'a>(&self, manifest: &'a Manifest) -> Result<Vec<(FileName, &'a Entry)>, Failure> {
+    fn select_entries<'a>(&self, manifest: &'a Manifest) -> Result<Vec<(FileName, &'a Entry)>> {
         let copied = || manifest.files.iter().filter(|entry| entry.copy.is_some());
         self.patterns.check(&copied().map(|entry| entry.name.as_str()).collect::<Vec<_>>())?;
         let mut chosen = Vec::new();
@@ -162,7 +155,7 @@ async fn compare(
     lists: &Lists,
     deliveries: &mut [Delivery],
     results: &mut [FileItem],
-) -> Result<bool, Failure> {
+) -> Result<bool> {
     for (Delivery { file, content }, result) in deliveries.iter_mut().zip(results) {
         if lists.existence(file) == Existence::No {
             continue;
@@ -181,7 +174,7 @@ async fn compare(
 }
 
 /// In a dry run, records the requests that a restore sends after it has read the file lists.
-async fn plan(link: &mut Link, deliveries: &mut [Delivery], confirmer: &Confirmer<'_>) -> Result<(), Failure> {
+async fn plan(link: &mut Link, deliveries: &mut [Delivery], confirmer: &Confirmer<'_>) -> Result<()> {
     confirmer.confirm(&Change::none()).await?;
     for Delivery { file, .. } in &*deliveries {
         let reason =

@@ -1,15 +1,12 @@
 //! File and list transfers over the link. Each way in which a transfer can end has its own message.
 
-use std::time::Duration;
-
 use super::compare::Comparer;
 use super::content::Content;
 use crate::failure::refusal_failure;
-use crate::link::{Link, Refusal};
+use crate::link::Refusal;
 use crate::prelude::*;
 use armctl_controller::yerc::files;
 use armctl_controller::yerc::files::split_list;
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{DownloadEnd, UploadEnd};
 use armctl_controller::yerc::table::service;
 use armctl_controller::yerc::wire::Status;
@@ -31,12 +28,12 @@ const NO_FILE_OR_EMPTY: u32 = 0xE29C;
 const JOB_EXISTS: &str = "0x4030";
 
 /// Reads the file names of one type, in the order of the controller.
-pub async fn list(link: &mut Link, kind: FileType) -> Result<Vec<Vec<u8>>, Failure> {
+pub async fn list(link: &mut Link, kind: FileType) -> Result<Vec<Vec<u8>>> {
     list_by(link, &files::list(kind)).await
 }
 
 /// Reads the file names that answer this list request.
-pub async fn list_by(link: &mut Link, request: &Request) -> Result<Vec<Vec<u8>>, Failure> {
+pub async fn list_by(link: &mut Link, request: &Request) -> Result<Vec<Vec<u8>>> {
     let mut data = Vec::new();
     let end = link
         .download(request, MAX_LIST, None, |piece| {
@@ -61,20 +58,12 @@ pub async fn list_by(link: &mut Link, request: &Request) -> Result<Vec<Vec<u8>>,
 }
 
 /// Downloads a file. Every block is passed to `take`.
-pub async fn fetch(
-    link: &mut Link,
-    file: &FileName,
-    take: impl FnMut(&[u8]) -> Result<(), Failure>,
-) -> Result<u64, Failure> {
+pub async fn fetch(link: &mut Link, file: &FileName, take: impl FnMut(&[u8]) -> Result<()>) -> Result<u64> {
     name_taken(service::SAVE, &link.download(&file.save(), MAX_FILE, None, take).await?)
 }
 
 /// Like [`fetch`], but for a file that was just listed. If such a file has no content, it is empty, and not missing.
-pub async fn fetch_listed(
-    link: &mut Link,
-    file: &FileName,
-    take: impl FnMut(&[u8]) -> Result<(), Failure>,
-) -> Result<u64, Failure> {
+pub async fn fetch_listed(link: &mut Link, file: &FileName, take: impl FnMut(&[u8]) -> Result<()>) -> Result<u64> {
     match link.download(&file.save(), MAX_FILE, None, take).await? {
         DownloadEnd::Nothing(Status { added: NO_FILE_OR_EMPTY, .. }) => Ok(0),
         end => name_taken(service::SAVE, &end),
@@ -88,7 +77,7 @@ pub async fn is_same(
     file: &FileName,
     content: &mut Content,
     ignore_header: bool,
-) -> Result<bool, Failure> {
+) -> Result<bool> {
     let name = link.encoding.decode(file.as_bytes());
     let mut progress = screen.bytes_progress(&format!("{name} (comparing)"), Some(content.size()));
     let mut comparer = Comparer::new(content.pieces()?, ignore_header);
@@ -110,7 +99,7 @@ pub async fn save(
     label: &str,
     target: &Target,
     download: Download<'_>,
-) -> Result<Hash, Failure> {
+) -> Result<Hash> {
     let mut draft = target.begin()?;
     let mut progress = screen.bytes_progress(label, None);
     let mut hash = Hash::default();
@@ -140,8 +129,8 @@ pub enum Download<'a> {
 pub async fn fetch_backup(
     link: &mut Link,
     wait: Duration,
-    take: impl FnMut(&[u8]) -> Result<(), Failure>,
-) -> Result<Option<u64>, Failure> {
+    take: impl FnMut(&[u8]) -> Result<()>,
+) -> Result<Option<u64>> {
     match link.download(&files::batch_backup(), MAX_FILE, Some(wait), take).await? {
         DownloadEnd::Finished => Ok(None),
         end => name_taken(service::SAVE, &end).map(Some),
@@ -149,7 +138,7 @@ pub async fn fetch_backup(
 }
 
 /// Deletes a file.
-pub async fn remove(link: &mut Link, file: &FileName) -> Result<(), Failure> {
+pub async fn remove(link: &mut Link, file: &FileName) -> Result<()> {
     let reply = link.raw(&file.delete()).await.map_err(|failure| match failure.kind {
         Kind::OutcomeUnknown => failure.hint("use `yerc file list` to see whether the file still exists"),
         _ => failure,
@@ -162,12 +151,7 @@ pub async fn remove(link: &mut Link, file: &FileName) -> Result<(), Failure> {
 }
 
 /// Uploads a file. Returns the hash of the content that was sent.
-pub async fn send(
-    link: &mut Link,
-    file: &FileName,
-    content: &mut Content,
-    progress: &mut Progress,
-) -> Result<Hash, Failure> {
+pub async fn send(link: &mut Link, file: &FileName, content: &mut Content, progress: &mut Progress) -> Result<Hash> {
     let total = content.size();
     let path = content.path().display().to_string();
     let mut pieces = content.pieces()?;
@@ -193,7 +177,7 @@ async fn is_listed(link: &mut Link, file: &FileName) -> bool {
 }
 
 /// In a dry run, records the requests of [`send`].
-pub fn plan_send(link: &mut Link, file: &FileName, content: &mut Content, reason: Reason<'_>) -> Result<(), Failure> {
+pub fn plan_send(link: &mut Link, file: &FileName, content: &mut Content, reason: Reason<'_>) -> Result<()> {
     let mut pieces = content.pieces()?;
     link.plan_upload(&file.load(), reason, || pieces.next_piece())?;
     let Some(kind) = file.file_type() else { return Ok(()) };
@@ -205,7 +189,7 @@ pub fn plan_send(link: &mut Link, file: &FileName, content: &mut Content, reason
 }
 
 /// In a dry run, records several downloads, one after another.
-pub fn plan_all(link: &mut Link, about: &str, requests: impl IntoIterator<Item = Request>) -> Result<(), Failure> {
+pub fn plan_all(link: &mut Link, about: &str, requests: impl IntoIterator<Item = Request>) -> Result<()> {
     Ok(requests.into_iter().try_for_each(|request| link.plan_download(&request, Reason::about(about)))?)
 }
 
@@ -224,7 +208,7 @@ pub fn not_listed() -> Failure {
 }
 
 /// Size of the received data, or the failure of the transfer.
-pub fn name_taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
+pub fn name_taken(service: u8, end: &DownloadEnd) -> Result<u64> {
     match *end {
         DownloadEnd::Complete { bytes, .. } => Ok(bytes),
         DownloadEnd::Nothing(status) | DownloadEnd::Refused { status, bytes: 0 } => {
@@ -254,7 +238,7 @@ pub fn name_taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
     }
 }
 
-fn name_sent(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Failure> {
+fn name_sent(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64> {
     let unknown = |message: String| {
         Err(Failure::new(Kind::OutcomeUnknown, message)
             .hint(format!("use `yerc file diff {name} {path}` to see what the controller has now")))

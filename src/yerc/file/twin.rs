@@ -1,7 +1,5 @@
 //! Start state of a simulator from a backup.
 
-use std::path::Path;
-
 use super::manifest::Manifest;
 use crate::prelude::*;
 use armctl_controller::text::unhex;
@@ -16,7 +14,7 @@ pub const UNKNOWN: &str = "a backup contains no positions of the axes, signals, 
                            VAR.DAT are undefined";
 
 /// Start state with the files of a backup.
-pub fn start(folder: &Path) -> Result<Start, Failure> {
+pub fn start(folder: &Path) -> Result<Start> {
     let manifest: Manifest = manifest::open_existing(folder)?;
     let refused = |why: String| impossible(folder, &why);
     let controller = &manifest.controller;

@@ -2,16 +2,13 @@
 //! there is always at least one copy of the job.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
 use super::compare::{Comparer, Comparison};
 use super::content::Content;
 use super::existence::{Existence, Lists};
 use super::transfer::{self, Download};
-use crate::link::Link;
 use crate::prelude::*;
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::local_names::{Target, folder_of, local_name};
 
 /// A file to upload.
@@ -40,7 +37,7 @@ pub async fn confirm_uploads<'a>(
     encoding: Encoding,
     lists: Option<&Lists>,
     deliveries: impl IntoIterator<Item = &'a Delivery>,
-) -> Result<(), Failure> {
+) -> Result<()> {
     let mut replaced = Vec::new();
     let mut has_machine_data = false;
     for Delivery { file, content } in deliveries {
@@ -65,12 +62,7 @@ pub async fn confirm_uploads<'a>(
 }
 
 /// In a dry run, records the requests of [`upload`].
-pub fn plan(
-    link: &mut Link,
-    delivery: &mut Delivery,
-    manner: UploadOptions,
-    reason: Reason<'_>,
-) -> Result<(), Failure> {
+pub fn plan(link: &mut Link, delivery: &mut Delivery, manner: UploadOptions, reason: Reason<'_>) -> Result<()> {
     let Delivery { file, content } = delivery;
     transfer::plan_send(link, file, content, reason)?;
     if manner.replace && file.file_type() == Some(FileType::Jbi) {
@@ -100,7 +92,7 @@ pub async fn upload(
     delivery: &mut Delivery,
     manner: UploadOptions,
     notes: &mut Vec<String>,
-) -> Result<Hash, Failure> {
+) -> Result<Hash> {
     let sent = match send(link, screen, delivery).await {
         Err(failure) if transfer::is_job_exists(&failure) => {
             if !manner.replace {
@@ -131,7 +123,7 @@ impl Delivery {
     pub fn name_in_job(&self, encoding: Encoding) -> Option<(String, String)> {
         let file = self.file.as_bytes();
         let stem = file.get(..file.len().saturating_sub(4)).unwrap_or(file);
-        let own = self.content.job_name().filter(|own| *own != stem)?;
+        let own = self.content.job_name.as_deref().filter(|own| *own != stem)?;
         Some((encoding.decode(own), encoding.decode(stem)))
     }
 }
@@ -146,14 +138,14 @@ fn check_job_name(link: &Link, delivery: &Delivery, failure: Failure) -> Failure
     }
 }
 
-async fn send(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<Hash, Failure> {
+async fn send(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<Hash> {
     let name = link.encoding.decode(delivery.file.as_bytes());
     let mut progress = screen.bytes_progress(&name, Some(delivery.content.size()));
     transfer::send(link, &delivery.file, &mut delivery.content, &mut progress).await
 }
 
 /// Reads the file back and compares all bytes.
-async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery, ignore_header: bool) -> Result<(), Failure> {
+async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery, ignore_header: bool) -> Result<()> {
     let name = link.encoding.decode(delivery.file.as_bytes());
     let mut progress = screen.bytes_progress(&format!("{name} (reading back)"), Some(delivery.content.size()));
     let path = delivery.content.path().display().to_string();
@@ -185,7 +177,7 @@ async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery, ignor
 
 /// Replaces an existing job. A local copy of the existing job is kept from before its deletion until the new job is on
 /// the controller.
-async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<Hash, Failure> {
+async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<Hash> {
     let mut old = OldCopy::fetch(link, screen, delivery).await?;
     old.is_needed = true;
     if let Err(failure) = transfer::remove(link, &delivery.file).await {
@@ -225,7 +217,7 @@ struct OldCopy {
 }
 
 impl OldCopy {
-    async fn fetch(link: &mut Link, screen: &Screen, delivery: &Delivery) -> Result<Self, Failure> {
+    async fn fetch(link: &mut Link, screen: &Screen, delivery: &Delivery) -> Result<Self> {
         let name = link.encoding.decode(delivery.file.as_bytes());
         let label = format!("{name} (copy of the old job)");
         let local = local_name(link.encoding, delivery.file.as_bytes());
@@ -236,7 +228,7 @@ impl OldCopy {
     }
 
     /// First free name for the copy: `A.JBI.replaced`, `A.JBI.replaced-2`.
-    fn local_folder(folder: &Path, local: &str) -> Result<Target, Failure> {
+    fn local_folder(folder: &Path, local: &str) -> Result<Target> {
         let free = |path: &PathBuf| path.symlink_metadata().is_err();
         let numbered = (2..1000).map(|number| folder.join(format!("{local}.replaced-{number}")));
         let path = std::iter::once(folder.join(format!("{local}.replaced"))).chain(numbered).find(free);

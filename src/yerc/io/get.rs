@@ -3,15 +3,10 @@
 use std::collections::HashSet;
 
 use super::super::batch_split::{BatchSplit, read_in_batches};
-use super::super::control_commands::usage;
 use super::{group_item, item, signal};
-use crate::complete;
-use crate::item_requests::read_failure;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::yerc::signal::Signal;
 use armctl_controller::yerc::variables::{parse_numbers, plan_io_reads};
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoRow, IoValue, Signals, WATCHED};
 
 /// Reads signals.
@@ -45,7 +40,7 @@ impl Command for Get {
     type Report = Signals;
     const ID: &'static str = "yerc.io.get";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Signals, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Signals> {
         let Context { link, robot, screen, .. } = context;
         let names = names::of_robot(robot, screen);
         let signals: Vec<Signal> =

@@ -1,14 +1,10 @@
 //! `yerc io list`.
 
 use super::super::batch_split::{BatchSplit, read_in_batches};
-use super::super::control_commands::usage;
 use super::{item, kind, signal};
-use crate::item_requests::read_failure;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::yerc::signal::Signal;
 use armctl_controller::yerc::variables::plan_io_reads;
-use armctl_frame::names;
 use armctl_frame::robot::io::{Filter, IoRow, Signals};
 
 /// Reads the signals of all classes of the model.
@@ -24,7 +20,7 @@ impl Command for List {
     type Report = Signals;
     const ID: &'static str = "yerc.io.list";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Signals, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Signals> {
         let Context { link, robot, screen, .. } = context;
         let names = names::of_robot(robot, screen);
         let groups = |model| -> Vec<u16> {

@@ -1,21 +1,13 @@
 //! `yerc io set`.
 
-use std::collections::BTreeMap;
 use std::str::FromStr;
 
 use super::super::batch_split::{BatchSplit, read_in_batches};
-use super::super::control_commands::usage;
 use super::{group_item, item, signal};
-use crate::complete;
-use crate::item_requests::read_failure;
-use crate::link::Link;
-use crate::link::Yerc;
 use crate::prelude::*;
-use armctl_controller::user_input;
 use armctl_controller::yerc::query::Query as _;
 use armctl_controller::yerc::signal::Signal;
 use armctl_controller::yerc::variables::{WriteIoStep, parse_numbers, plan_io_reads, plan_io_writes};
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoItem, IoValue, WrittenSignal, WrittenSignals};
 use armctl_frame::robot::item::Plain;
 use armctl_frame::settings_report::{IF_DIFFERENT, OLD_VALUE};
@@ -93,7 +85,7 @@ impl Command for Set {
     const ID: &'static str = "yerc.io.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenSignals, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenSignals> {
         let Context { link, screen, robot, confirmer, .. } = context;
         let names = names::of_robot(robot, screen);
         let changes: Vec<Row<Groups>> = self.changes()?.into_iter().collect();
@@ -110,7 +102,7 @@ impl Command for Set {
             let row = row(*group)?;
             Some(group_item(model, *group).map(|item| written(item, row, |byte| IoValue::Number(byte.into()))))
         });
-        WrittenSignals::new(signals.chain(groups).collect::<Result<_, Failure>>()?).unless_all_failed()
+        WrittenSignals::new(signals.chain(groups).collect::<Result<_>>()?).unless_all_failed()
     }
 }
 
@@ -120,7 +112,7 @@ fn written(item: IoItem, row: &ComparedRow<Groups>, value: impl Fn(u8) -> IoValu
 
 impl Set {
     /// Change of each group. It is an error if a signal occurs twice.
-    fn changes(&self) -> Result<BTreeMap<u16, Change>, Failure> {
+    fn changes(&self) -> Result<BTreeMap<u16, Change>> {
         let mut changes: BTreeMap<u16, Change> = BTreeMap::new();
         let wholes = self.groups.iter().map(|whole| (whole.group, Change { mask: u8::MAX, value: whole.value }));
         let switches = self.signals.iter().map(|Switch { signal, on }| {
@@ -165,7 +157,7 @@ impl Store for Groups {
         group.to_string()
     }
 
-    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self> {
         Ok(Self { model: Model::Dx200 })
     }
 
@@ -185,7 +177,7 @@ impl Store for Groups {
         Plain {}
     }
 
-    async fn read(&self, link: &mut Link, _screen: &Screen, groups: &[u16]) -> Result<Answers<u8>, Failure> {
+    async fn read(&self, link: &mut Link, _screen: &Screen, groups: &[u16]) -> Result<Answers<u8>> {
         let plan = |groups: &[u16]| plan_io_reads(self.model, groups).map_err(usage);
         let answers = read_in_batches(link, plan, groups, |_| BatchSplit::Halves, |_, _| {}).await?;
         let row = |group: &u16| match answers.get(group) {
@@ -205,7 +197,7 @@ impl Writable for Groups {
         Err(format!("group {group}: signals are not in files"))
     }
 
-    fn complete_draft(&self, group: u16, change: &Change, old: Option<&u8>) -> Result<u8, Failure> {
+    fn complete_draft(&self, group: u16, change: &Change, old: Option<&u8>) -> Result<u8> {
         match old {
             Some(byte) => Ok(change.apply(*byte)),
             None if change.mask == u8::MAX => Ok(change.value),
@@ -216,7 +208,7 @@ impl Writable for Groups {
         }
     }
 
-    async fn read_old(&self, link: &mut Link, screen: &Screen, rows: &[Row<Self>]) -> Result<Answers<u8>, Failure> {
+    async fn read_old(&self, link: &mut Link, screen: &Screen, rows: &[Row<Self>]) -> Result<Answers<u8>> {
         let groups: Vec<u16> = rows.iter().map(|(group, _)| *group).collect();
         self.read(link.for_purpose(OLD_VALUE), screen, &groups).await
     }
@@ -230,7 +222,7 @@ impl Writable for Groups {
         }
     }
 
-    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<()> {
         let steps = |old: u8| self.steps(rows.iter().map(|(group, change)| (*group, change.apply(old))));
         for (one, other) in steps(0)?.iter().zip(steps(u8::MAX)?) {
             let groups = user_input::format_ranges(one.written(), "..");
@@ -246,7 +238,7 @@ impl Writable for Groups {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<()> {
         for step in self.steps(rows.iter().map(|(group, _, new)| (*group, **new)))? {
             link.ask(&step).await?;
         }
@@ -255,7 +247,7 @@ impl Writable for Groups {
 }
 
 impl Groups {
-    fn steps(&self, values: impl Iterator<Item = (u16, u8)>) -> Result<Vec<WriteIoStep>, Failure> {
+    fn steps(&self, values: impl Iterator<Item = (u16, u8)>) -> Result<Vec<WriteIoStep>> {
         plan_io_writes(self.model, &values.collect::<Vec<_>>()).map_err(usage)
     }
 }
@@ -264,7 +256,7 @@ impl Groups {
 mod tests {
     use super::*;
 
-    fn set(signals: &[&str], groups: &[&str]) -> Result<BTreeMap<u16, Change>, Failure> {
+    fn set(signals: &[&str], groups: &[&str]) -> Result<BTreeMap<u16, Change>> {
         Set {
             signals: signals.iter().map(|text| text.parse().unwrap()).collect(),
             groups: groups.iter().map(|text| text.parse().unwrap()).collect(),

@@ -1,13 +1,10 @@
 //! Signal and group arguments.
 
-use super::super::control_commands::usage;
 use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_controller::user_input;
 use armctl_controller::yerc::signal::{Signal, SignalError, io_class};
 use armctl_controller::yerc::table::{Row, Span};
 use armctl_controller::yerc::variables::{IoStep, plan_io_reads};
-use armctl_frame::names;
 
 /// Placeholder for a name that is not resolved yet: a signal that exists on every model.
 const ANY: &str = "10010";
@@ -41,7 +38,7 @@ pub fn name(group: u16, bit: u8) -> String {
 }
 
 /// Class of a group: its meaning, and whether signals of the group can be written.
-pub fn class(model: Model, group: u16) -> Result<&'static Span, Failure> {
+pub fn class(model: Model, group: u16) -> Result<&'static Span> {
     io_class(model, group).ok_or_else(|| {
         Failure::usage(format!("group {group} ({}) does not exist on a {model}", name(group, 0)))
             .hint(format!("there are {}", listed(model, |_| true)))
@@ -49,14 +46,14 @@ pub fn class(model: Model, group: u16) -> Result<&'static Span, Failure> {
 }
 
 /// Meanings of groups, and the requests that read the groups. If `to_write` is set, all groups must be writable.
-pub fn is_readable(model: Model, groups: &[u16], to_write: bool) -> Result<(Vec<&'static str>, Vec<IoStep>), Failure> {
+pub fn is_readable(model: Model, groups: &[u16], to_write: bool) -> Result<(Vec<&'static str>, Vec<IoStep>)> {
     let class = if to_write { writable } else { class };
-    let meanings = groups.iter().map(|group| Ok(class(model, *group)?.meaning)).collect::<Result<_, Failure>>()?;
+    let meanings = groups.iter().map(|group| Ok(class(model, *group)?.meaning)).collect::<Result<_>>()?;
     Ok((meanings, plan_io_reads(model, groups).map_err(usage)?))
 }
 
 /// Class of a group, which must be writable.
-pub fn writable(model: Model, group: u16) -> Result<&'static Span, Failure> {
+pub fn writable(model: Model, group: u16) -> Result<&'static Span> {
     let span = class(model, group)?;
     if span.writable {
         return Ok(span);

@@ -1,8 +1,6 @@
 //! `yerc job calls`.
 
 use super::programs::{JobSource, jobs_of, parse};
-use crate::complete;
-use crate::link::Yerc;
 use crate::prelude::*;
 use crate::selected_job::SelectedJob;
 use armctl_frame::programs::calls::CallReport;
@@ -33,12 +31,12 @@ impl Command for Calls {
         self.source.from.is_none()
     }
 
-    fn run_alone(&self) -> Result<CallReport, Failure> {
+    fn run_alone(&self) -> Result<CallReport> {
         let (folder, set, encoding) = self.source.folder()?;
         self.tree(set, encoding, &CheckSettings::load(Some(folder))?)
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<CallReport, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<CallReport> {
         let Context { link, screen, .. } = context;
         let mut settings = CheckSettings::load(None)?;
         settings.master.extend(SelectedJob::ask(link).await?.name(link.encoding));
@@ -48,7 +46,7 @@ impl Command for Calls {
 }
 
 impl Calls {
-    fn tree(&self, set: ProgramSet, encoding: Encoding, settings: &CheckSettings) -> Result<CallReport, Failure> {
+    fn tree(&self, set: ProgramSet, encoding: Encoding, settings: &CheckSettings) -> Result<CallReport> {
         let programs = parse(&set, encoding);
         let names = programs.iter().map(|program| program.name.as_str());
         let root = self.name.as_deref().map(super::without_suffix);

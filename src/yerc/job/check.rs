@@ -1,8 +1,6 @@
 //! `yerc job check`.
 
 use super::programs::{JobSource, jobs_in, jobs_of, parse};
-use crate::complete;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_frame::programs::check::{CheckArguments, CheckContext, check};
 use armctl_frame::programs::settings;
@@ -39,12 +37,12 @@ impl Command for Check {
         self.source.from.is_none()
     }
 
-    fn run_alone(&self) -> Result<Verdict, Failure> {
+    fn run_alone(&self) -> Result<Verdict> {
         let (folder, set, encoding) = self.source.folder()?;
         self.check(set, encoding, self.limits.settings(Some(folder))?)
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Verdict, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Verdict> {
         let Context { link, screen, .. } = context;
         let settings = self.limits.settings(None)?;
         let set = jobs_of(link, screen).await?;
@@ -53,12 +51,7 @@ impl Command for Check {
 }
 
 impl Check {
-    fn check(
-        &self,
-        set: ProgramSet,
-        encoding: Encoding,
-        settings: settings::CheckSettings,
-    ) -> Result<Verdict, Failure> {
+    fn check(&self, set: ProgramSet, encoding: Encoding, settings: settings::CheckSettings) -> Result<Verdict> {
         let mut programs = parse(&set, encoding);
         let selected: Vec<String> = self.names.iter().map(|name| super::without_suffix(name).to_owned()).collect();
         check_names(&selected, programs.iter().map(|program| program.name.as_str()))?;

@@ -1,7 +1,6 @@
 //! `yerc job list`.
 
 use crate::file::{LISTS, ReportedName, list, plan_all};
-use crate::link::Yerc;
 use crate::prelude::*;
 use crate::selected_job::SelectedJob;
 use armctl_controller::yerc::files;
@@ -15,7 +14,7 @@ impl Command for List {
     type Report = Listing;
     const ID: &'static str = "yerc.job.list";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Listing, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Listing> {
         let Context { link, screen, .. } = context;
         let selected = SelectedJob::ask(link).await?;
         if link.is_dry_run() {

@@ -1,20 +1,15 @@
 //! `yerc job show --path`: the motion of a job.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
-
 use super::order::{Executed, RunOrder};
 use super::programs::jobs_in;
 use super::{Show, without_suffix};
 use crate::file::{exact, fetch, plan_all};
 use crate::item_requests::ReadError;
-use crate::link::{Link, Yerc};
 use crate::prelude::*;
 use armctl_controller::references::{ProgrammedSpeed, Reference, Role};
 use armctl_controller::yerc::job::{JobText, scan};
 use armctl_controller::yerc::query::{ReadJob, ReadVariable};
 use armctl_controller::yerc::variables::{Value, VariableKind};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::local_names::folder_of;
 use armctl_frame::path::{
     Drawing, Interpolation, Motion, NotDrawn, PathOptions, PathReport, Recorder, Step, arc, length,
@@ -63,18 +58,15 @@ impl Command for JobPath {
     type Family = Yerc;
     type Report = PathReport;
     const ID: &'static str = "yerc.job.path";
+    const USES_FILES: bool = true;
 
     fn takes_robot(&self) -> bool {
-        self.options.from().is_none() && self.file().is_none()
+        self.options.from.is_none() && self.file().is_none()
     }
 
-    fn uses_files(&self) -> bool {
-        true
-    }
-
-    fn run_alone(&self) -> Result<PathReport, Failure> {
+    fn run_alone(&self) -> Result<PathReport> {
         self.options.check(false)?;
-        if let (None, Some(path)) = (self.options.from(), self.file()) {
+        if let (None, Some(path)) = (self.options.from.as_deref(), self.file()) {
             let bytes = text_files::read(&path)?;
             let text = String::from_utf8(bytes).unwrap_or_else(|error| Encoding::default().decode(error.as_bytes()));
             let name = JobText::new(&text).name.map(ToOwned::to_owned);
@@ -84,7 +76,7 @@ impl Command for JobPath {
             jobs.texts.insert(name.clone(), text);
             return self.report(&name, &jobs);
         }
-        let jobs = jobs_of_folder(self.options.from().unwrap_or(Path::new(".")))?;
+        let jobs = jobs_of_folder(self.options.from.as_deref().unwrap_or(Path::new(".")))?;
         let job = self.job.as_deref().ok_or_else(|| {
             Failure::usage("the name of the job is missing")
                 .hint("type a job, such as `yerc job show WELD --path --from FOLDER`")
@@ -94,7 +86,7 @@ impl Command for JobPath {
         self.report(&name, &jobs)
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<PathReport, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<PathReport> {
         let Context { link, several, .. } = context;
         self.options.check(several)?;
         let name = if let Some(job) = &self.job {
@@ -124,9 +116,9 @@ impl JobPath {
         self.job.as_ref().map(PathBuf::from).filter(|path| path.is_file())
     }
 
-    fn report(&self, name: &str, jobs: &Jobs) -> Result<PathReport, Failure> {
+    fn report(&self, name: &str, jobs: &Jobs) -> Result<PathReport> {
         let motion = motion(name, jobs, None);
-        let old = match self.options.compare() {
+        let old = match self.options.compare.as_deref() {
             Some(folder) => {
                 let old = jobs_of_folder(folder)?;
                 check_names(&[name.to_owned()], old.texts.keys().map(String::as_str)).map_err(|failure| Failure {
@@ -141,7 +133,7 @@ impl JobPath {
     }
 }
 
-fn jobs_of_folder(folder: &Path) -> Result<Jobs, Failure> {
+fn jobs_of_folder(folder: &Path) -> Result<Jobs> {
     let (set, encoding) = jobs_in(folder)?;
     let text = |file: &armctl_frame::programs::source::ProgramFile| {
         (without_suffix(&file.name).to_owned(), encoding.decode(&file.bytes))
@@ -150,7 +142,7 @@ fn jobs_of_folder(folder: &Path) -> Result<Jobs, Failure> {
 }
 
 /// File of a job on the controller.
-fn job_file(link: &Link, name: &str) -> Result<FileName, Failure> {
+fn job_file(link: &Link, name: &str) -> Result<FileName> {
     let bytes = link.encoding.encode_name(&format!("{name}.JBI"));
     exact(bytes.map_err(|error| {
         Failure::usage(format!("the job name: {error}"))
@@ -159,7 +151,7 @@ fn job_file(link: &Link, name: &str) -> Result<FileName, Failure> {
 }
 
 /// Reads a job from the controller, the jobs that it calls, and the P variables of its moves.
-async fn read(link: &mut Link, name: &str) -> Result<Jobs, Failure> {
+async fn read(link: &mut Link, name: &str) -> Result<Jobs> {
     let mut jobs = Jobs::default();
     let mut open = vec![name.to_owned()];
     while let Some(next) = open.pop().filter(|_| jobs.texts.len() <= MAX_CALLED) {

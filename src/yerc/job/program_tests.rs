@@ -1,7 +1,3 @@
-use std::path::Path;
-
-use serde_json::Value;
-
 use crate::prelude::*;
 use crate::testing::{DX200, quiet, resolve_robot};
 
@@ -13,7 +9,7 @@ fn write_job(folder: &Path, name: &str, positions: &[&str], instructions: &str) 
 }
 
 /// Runs a command without a robot.
-fn run(words: &str, folder: &Path) -> Result<(Value, Option<Failure>), Failure> {
+fn run(words: &str, folder: &Path) -> Result<(Value, Option<Failure>)> {
     let words = words.replace("DIR", folder.to_str().unwrap());
     let (_, command) = resolve_robot(DX200, &words.split(' ').collect::<Vec<_>>()).unwrap();
     let report = command.without_robot(&quiet()).expect("the command needs no robot")?;

@@ -1,16 +1,12 @@
 //! Jobs of a controller or of a folder, for commands that read all jobs.
 
-use std::path::{Path, PathBuf};
-
 use super::without_suffix;
 use crate::file::{Manifest, exact, fetch_listed, job_form, list, plan_all};
-use crate::link::Link;
 use crate::prelude::*;
 use armctl_controller::findings::{Finding, Rule, Severity};
 use armctl_controller::yerc::files;
 use armctl_controller::yerc::job::{JobText, position, scan};
 use armctl_frame::backup::continues_after;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::items::{ItemError, describe_request};
 use armctl_frame::programs::source::{FolderFilter, ProgramFile, ProgramSet, read_folder};
 use armctl_frame::programs::{Line, Position, Program};
@@ -36,7 +32,7 @@ impl JobSource {
     ///
     /// # Errors
     /// The errors of [`jobs_in`].
-    pub fn folder(&self) -> Result<(&Path, ProgramSet, Encoding), Failure> {
+    pub fn folder(&self) -> Result<(&Path, ProgramSet, Encoding)> {
         let folder = self.from.as_deref().ok_or_else(|| Failure::local("internal error: no folder to read"))?;
         let (set, encoding) = jobs_in(folder)?;
         Ok((folder, set, encoding))
@@ -48,7 +44,7 @@ impl JobSource {
 ///
 /// # Errors
 /// A file cannot be read, or the folder has no jobs.
-pub fn jobs_in(folder: &Path) -> Result<(ProgramSet, Encoding), Failure> {
+pub fn jobs_in(folder: &Path) -> Result<(ProgramSet, Encoding)> {
     let (set, manifest): (ProgramSet, Option<Manifest>) = read_folder(folder, JOBS)?;
     let is_utf8 = set.files.iter().all(|file| std::str::from_utf8(&file.bytes).is_ok());
     let otherwise = if is_utf8 { Encoding::Utf8 } else { Encoding::default() };
@@ -103,7 +99,7 @@ fn form_of(file: &ProgramFile, name: &str, name_in_file: Option<&str>) -> Vec<Fi
 ///
 /// # Errors
 /// The list of jobs cannot be read, or the connection is lost.
-pub async fn jobs_of(link: &mut Link, screen: &Screen) -> Result<ProgramSet, Failure> {
+pub async fn jobs_of(link: &mut Link, screen: &Screen) -> Result<ProgramSet> {
     if link.is_dry_run() {
         plan_all(link, "the jobs of the controller", [files::list(FileType::Jbi)])?;
         link.then("armctl downloads every listed job, and acknowledges each block");

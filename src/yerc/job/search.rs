@@ -1,15 +1,10 @@
 //! `yerc job search`.
 
-use std::path::Path;
-
 use super::programs::{JobSource, jobs_of, parse};
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::names::{Kind as NameKind, Name, NameMatch, Names};
-use armctl_controller::similar_word::nearest;
 use armctl_controller::yerc::job::names_of;
 use armctl_controller::yerc::names::{FILES, read};
-use armctl_frame::names;
 use armctl_frame::programs::search::{Matches, SearchArguments};
 use armctl_frame::programs::source::ProgramSet;
 use armctl_frame::text_files;
@@ -41,12 +36,12 @@ impl Command for Search {
         self.source.from.is_none()
     }
 
-    fn run_alone(&self) -> Result<Matches, Failure> {
+    fn run_alone(&self) -> Result<Matches> {
         let (folder, set, encoding) = self.source.folder()?;
         self.find(set, encoding, &names_in(folder, encoding))
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Matches, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Matches> {
         let Context { link, screen, robot, .. } = context;
         let names = names::of_robot(robot, screen);
         // A wrong object is reported before the jobs are read.
@@ -60,13 +55,13 @@ impl Command for Search {
 const KINDS: [NameKind; 2] = [NameKind::Variable, NameKind::Signal];
 
 impl Search {
-    fn find(&self, set: ProgramSet, encoding: Encoding, names: &Names) -> Result<Matches, Failure> {
+    fn find(&self, set: ProgramSet, encoding: Encoding, names: &Names) -> Result<Matches> {
         self.search.search(&parse(&set, encoding), &self.objects(names)?, set.unread)
     }
 
     /// Names in instructions of the object of `--uses`.
-    fn objects(&self, names: &Names) -> Result<Vec<String>, Failure> {
-        let Some(text) = self.search.uses() else { return Ok(Vec::new()) };
+    fn objects(&self, names: &Names) -> Result<Vec<String>> {
+        let Some(text) = &self.search.uses else { return Ok(Vec::new()) };
         let objects = names_of(text);
         if !objects.is_empty() {
             return Ok(objects);

@@ -4,7 +4,6 @@
 //! downloaded each time. Its hash identifies the version.
 
 use crate::file::{exact, fetch};
-use crate::link::Link;
 use crate::prelude::*;
 use armctl_controller::yerc::payload::JobInfo;
 use armctl_frame::backup::manifest::Hash;
@@ -17,12 +16,12 @@ pub struct Source {
     /// SHA-256 of the file, as in backups.
     sha256: String,
     /// Text of the line; null if the file does not have the line.
-    text: Option<String>,
+    pub text: Option<String>,
 }
 
 impl Source {
     /// Downloads the file of a job, and finds the current line in it.
-    pub async fn read(link: &mut Link, job: &JobInfo) -> Result<Self, Failure> {
+    pub async fn read(link: &mut Link, job: &JobInfo) -> Result<Self> {
         let name = [job.name.as_bytes(), b".JBI"].concat();
         let (mut hash, mut content) = (Hash::default(), Vec::new());
         fetch(link, &exact(name.clone())?, |piece| {
@@ -33,11 +32,6 @@ impl Source {
         .await?;
         let text = line(&content, job.line).map(|line| link.encoding.decode(line));
         Ok(Self { file: link.encoding.decode(&name), sha256: hash.hex(), text })
-    }
-
-    /// Text of the line.
-    pub fn text(&self) -> Option<&str> {
-        self.text.as_deref()
     }
 }
 

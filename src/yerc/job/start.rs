@@ -1,23 +1,17 @@
 //! `yerc job start`: starts the selected job, or a job by name, once or several times, and can wait for its end.
 
-use std::time::Duration;
-
 use tokio::time::Instant;
 
 use super::{Select, about, without_suffix};
-use crate::complete;
-use crate::link::{Link, Yerc};
 use crate::motion::{POLL_INTERVAL, START_TIMEOUT, StandstillCause, lost_contact, plan_alarm};
 use crate::number_arguments::parse_in_range;
 use crate::prelude::*;
 use crate::selected_job::SelectedJob;
 use armctl_controller::yerc::payload::{ControllerStatus, StatusBit};
 use armctl_controller::yerc::query::{Query as _, ReadJob, ReadStatus, SelectJob, StartJob};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::gate::data_changed;
 use armctl_frame::repeated_runs::{Repeat, Runs};
 use armctl_frame::robot::program::{Program, ProgramState};
-use armctl_frame::settings::duration;
 use armctl_frame::wait_arguments::ProgramEnd;
 
 /// Starts the selected job, or selects a job and starts it (FS and DX 3.3.23, 3.3.24).
@@ -59,7 +53,7 @@ impl Command for Start {
         }
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Started, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Started> {
         let Context { link, screen, confirmer, .. } = context;
         let named = match self.name.as_deref() {
             Some(name) => Some(self.selection(link, without_suffix(name)).await?),
@@ -118,7 +112,7 @@ impl Command for Start {
 }
 
 impl Start {
-    async fn selection(&self, link: &mut Link, name: &str) -> Result<(Vec<u8>, SelectJob), Failure> {
+    async fn selection(&self, link: &mut Link, name: &str) -> Result<(Vec<u8>, SelectJob)> {
         let select = Select { name: name.to_owned(), line: self.line.unwrap_or(0), task: None };
         let query = select.query(name, link).await?;
         Ok((link.encode("the job name", name)?, query))
@@ -134,7 +128,7 @@ impl Start {
     }
 
     /// In a dry run, records what follows a start.
-    async fn plan(&self, link: &mut Link) -> Result<Failure, Failure> {
+    async fn plan(&self, link: &mut Link) -> Result<Failure> {
         link.plan(&ReadStatus.request(), "repeatedly until the job has ended");
         let job = link.by_model(|model| ReadJob::new(model, 0)).await?;
         link.plan(&job.request(), "line at the end");
@@ -149,7 +143,7 @@ impl Start {
 }
 
 /// Rejects repeated starts in a cycle mode in which the job does not end, or ends after each line.
-async fn check_cycle(link: &mut Link) -> Result<(), Failure> {
+async fn check_cycle(link: &mut Link) -> Result<()> {
     let Some(status) = link.for_purpose("cycle mode").ask(&ReadStatus).await.known()? else {
         return Ok(());
     };
@@ -165,7 +159,7 @@ async fn check_cycle(link: &mut Link) -> Result<(), Failure> {
 }
 
 /// Rejects the start if the selected job is not the confirmed job.
-fn check_selected(link: &Link, name: &[u8], before: &SelectedJob, now: &SelectedJob) -> Result<(), Failure> {
+fn check_selected(link: &Link, name: &[u8], before: &SelectedJob, now: &SelectedJob) -> Result<()> {
     let shown = |chosen: &SelectedJob| chosen.name(link.encoding).unwrap_or_else(|| "an unknown job".to_owned());
     if !now.is(name) {
         return Err(data_changed(format!(
@@ -189,7 +183,7 @@ async fn wait(
     limit: Option<Duration>,
     what: &str,
     chosen: &SelectedJob,
-) -> Result<(u64, Option<u32>), Failure> {
+) -> Result<(u64, Option<u32>)> {
     let progress = screen.spinner(what);
     let began = Instant::now();
     let mut watch = Watch::new(limit);
@@ -227,7 +221,7 @@ async fn wait(
 }
 
 /// Whether the job is at another line than before the start.
-async fn has_changed(link: &mut Link, chosen: &SelectedJob) -> Result<bool, Failure> {
+async fn has_changed(link: &mut Link, chosen: &SelectedJob) -> Result<bool> {
     let SelectedJob::Job(before) = chosen else { return Ok(false) };
     let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
     let now = link.ask_optional(&question).await.map_err(|failure| lost_contact("the job was started", failure))?;
@@ -235,7 +229,7 @@ async fn has_changed(link: &mut Link, chosen: &SelectedJob) -> Result<bool, Fail
 }
 
 /// Job and line for the progress display, if there is such a display. A refusal is ignored here.
-async fn line(link: &mut Link, is_seen: bool) -> Result<Option<String>, Failure> {
+async fn line(link: &mut Link, is_seen: bool) -> Result<Option<String>> {
     if !is_seen {
         return Ok(None);
     }

@@ -1,10 +1,5 @@
 //! Arguments of a move. They are converted exactly to the integers of the protocol.
 
-use std::fmt;
-
-use clap::ValueEnum;
-
-use crate::complete;
 use crate::number_arguments::parse_in_range;
 use crate::position::{extended_words, form_words, in_a_line};
 use crate::prelude::*;
@@ -12,7 +7,6 @@ use armctl_controller::names::Kind;
 use armctl_controller::units::{self, Unit};
 use armctl_controller::yerc::payload::{ExtendedForm, Form, SpeedClass};
 use armctl_controller::yerc::variables::Reference;
-use armctl_frame::names;
 use armctl_frame::robot::motion;
 use armctl_frame::wait_arguments::MotionEnd;
 
@@ -469,7 +463,7 @@ pub(super) fn split<'a, T>(
     flag: &str,
     base: Option<&'a Values>,
     station: Option<&'a Values>,
-) -> Result<Part<'a, T>, Failure> {
+) -> Result<Part<'a, T>> {
     let wrong = |message: String| {
         Err(Failure::usage(message).hint(
             "use one command for the robot and one command for the station: they cannot move in one command (FS and \

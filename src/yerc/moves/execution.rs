@@ -1,12 +1,10 @@
 //! A motion from the confirmation to its end: reads before the start, and supervision after the start.
 
-use std::time::Duration;
-
 use tokio::time::Instant;
 
 use super::question::{Question, moved_during_question};
 use crate::failure::refusal_failure;
-use crate::link::{Link, Refusal, Yerc};
+use crate::link::Refusal;
 use crate::motion::{POLL_INTERVAL, START_TIMEOUT, StandstillCause, lost_contact, plan_alarm};
 use crate::position::{self, as_reported, in_a_line};
 use crate::prelude::*;
@@ -17,7 +15,6 @@ use armctl_controller::yerc::query::{Coordinates, Query, ReadPosition, ReadStatu
 use armctl_controller::yerc::status::is_absent;
 use armctl_frame::robot::motion::Motion;
 use armctl_frame::robot::position as robot;
-use armctl_frame::settings::duration;
 
 /// A motion whose arguments have been checked.
 #[derive(Debug)]
@@ -129,11 +126,7 @@ fn is_within_tolerance(unit: Unit, one: i32, other: i32, others: i64, degrees: i
 
 impl<Q: Query<Answer = ()>> Execution<Q> {
     /// Confirms the motion and starts it. Unless `--no-wait` is set, waits for its end.
-    pub(super) async fn run(
-        self,
-        context: Context<'_, Yerc>,
-        question: &Question<'_>,
-    ) -> Result<MotionReport, Failure> {
+    pub(super) async fn run(self, context: Context<'_, Yerc>, question: &Question<'_>) -> Result<MotionReport> {
         let Context { link, screen, confirmer, .. } = context;
         let Self { order, group, mut goal, unnamed, no_wait } = self;
         let coordinates = goal.coordinates();
@@ -223,7 +216,7 @@ impl<Q: Query<Answer = ()>> Execution<Q> {
 }
 
 /// In a dry run, records the requests during the motion.
-pub(super) async fn plan_looks(link: &mut Link, group: Group, coordinates: Coordinates) -> Result<(), Failure> {
+pub(super) async fn plan_looks(link: &mut Link, group: Group, coordinates: Coordinates) -> Result<()> {
     let about = "repeatedly until the motion has ended";
     link.plan(&ReadStatus.request(), about);
     let question = link.by_model(|model| ReadPosition::new(model, group, coordinates)).await?;
@@ -258,7 +251,7 @@ async fn resting_place(
 
 /// Refuses a move that would move axes to 0 because the user did not give values for them. A move has words for every
 /// axis. A 0 for an axis without a value is correct only if the axis is not fitted, or is at 0.
-async fn refuse_implicit_zeros(link: &mut Link, group: Group, named: usize, flag: &str) -> Result<(), Failure> {
+async fn refuse_implicit_zeros(link: &mut Link, group: Group, named: usize, flag: &str) -> Result<()> {
     if named >= words(group) {
         return Ok(());
     }

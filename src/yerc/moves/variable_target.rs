@@ -4,10 +4,8 @@ use super::arguments::{Destination, Speed, Values};
 use super::execution::{Execution, Goal, MotionReport, plan_looks};
 use super::question::Question;
 use super::{Target, cartesian_move, describe_path, unnamed_base_axes};
-use crate::control_commands::usage;
 use crate::failure::refusal_failure;
 use crate::item_requests::ReadError;
-use crate::link::{Link, Yerc};
 use crate::position;
 use crate::prelude::*;
 use crate::var::{different_words, is_undefined, variable_name};
@@ -17,8 +15,6 @@ use armctl_controller::yerc::query::{
     Coordinates, MoveCartesian, MoveKind, MovePulse, Query, ReadPosition, ReadVariable,
 };
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
-use armctl_frame::dry_run::unknown;
-use armctl_frame::names;
 
 /// A move to a position in a variable or to axis angles.
 pub(super) struct Motion<'a> {
@@ -29,11 +25,7 @@ pub(super) struct Motion<'a> {
 
 impl Motion<'_> {
     /// Reads the target, asks the user to confirm, and starts the motion.
-    pub(super) async fn run(
-        &self,
-        context: Context<'_, Yerc>,
-        destination: &Destination,
-    ) -> Result<MotionReport, Failure> {
+    pub(super) async fn run(&self, context: Context<'_, Yerc>, destination: &Destination) -> Result<MotionReport> {
         let link = &mut *context.link;
         let (name, value) = match destination {
             Destination::Degrees(degrees) => {
@@ -101,12 +93,7 @@ impl Motion<'_> {
         }
     }
 
-    async fn pulses(
-        &self,
-        link: &mut Link,
-        value: &Value,
-        name: Option<Reference>,
-    ) -> Result<Execution<MovePulse>, Failure> {
+    async fn pulses(&self, link: &mut Link, value: &Value, name: Option<Reference>) -> Result<Execution<MovePulse>> {
         let group = self.target.mover.group;
         let (robot, station) = self.target.mover.words();
         let mut order = PulseMove {
@@ -152,7 +139,7 @@ impl Motion<'_> {
         link: &mut Link,
         position: Position,
         name: Option<Reference>,
-    ) -> Result<Execution<MoveCartesian>, Failure> {
+    ) -> Result<Execution<MoveCartesian>> {
         let group = self.target.mover.group;
         let [x, y, z, rx, ry, rz, re, eighth] = position.axes.padded();
         if (re, eighth) != (0, 0) {
@@ -188,7 +175,7 @@ impl Motion<'_> {
     }
 
     /// Converts degrees to pulses with the pulses per degree in the inventory.
-    fn rotated_axis(&self, link: &Link, degrees: &[f64]) -> Result<Position, Failure> {
+    fn rotated_axis(&self, link: &Link, degrees: &[f64]) -> Result<Position> {
         let group = self.target.mover.group;
         let per_degree = link.pulses_per_degree(group);
         if per_degree.len() < degrees.len() {
@@ -217,7 +204,7 @@ impl Motion<'_> {
     }
 
     /// In a dry run, records what follows. The kind of move is unknown.
-    async fn plan(&self, link: &mut Link, variable: Reference) -> Result<Failure, Failure> {
+    async fn plan(&self, link: &mut Link, variable: Reference) -> Result<Failure> {
         let group = self.target.mover.group;
         let model = link.model_for(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
         if let Group::Robot(number) = group {
@@ -268,7 +255,7 @@ impl Motion<'_> {
 }
 
 /// Content of a variable. The variable must be defined.
-async fn read(link: &mut Link, variable: Reference) -> Result<Value, Failure> {
+async fn read(link: &mut Link, variable: Reference) -> Result<Value> {
     let question = ReadVariable::new(variable.kind, variable.number);
     match link.for_purpose("target position").ask_optional(&question).await? {
         Ok(value) => Ok(value),
@@ -282,7 +269,7 @@ async fn read(link: &mut Link, variable: Reference) -> Result<Value, Failure> {
 }
 
 /// Rejects a variable that belongs to another kind of group.
-fn is_suitable(variable: Reference, group: Group) -> Result<(), Failure> {
+fn is_suitable(variable: Reference, group: Group) -> Result<()> {
     let is_right = match group {
         Group::Robot(_) => variable.kind == VariableKind::P,
         Group::Station(_) => variable.kind == VariableKind::Ex,

@@ -2,8 +2,6 @@
 //!
 //! A position may have only some of its columns. The other fields keep their value on the controller.
 
-use std::collections::BTreeMap;
-
 use super::position::{self, PositionData};
 use super::position_word::different_words;
 use super::value::Data;
@@ -176,7 +174,6 @@ pub fn zero_bytes(cells: &Cells, kind: VariableKind) -> Option<[Value; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_controller::text::Encoding;
     use armctl_controller::yerc::variables::Reference;
 
     fn value(name: &str, text: &str) -> (VariableKind, Value) {

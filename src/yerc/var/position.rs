@@ -1,7 +1,5 @@
 //! JSON form of positions: every axis with its unit, and the text for `var set`.
 
-use std::collections::BTreeMap;
-
 use serde_json::{Map, Value as Json};
 
 use super::position_word::different_words;
@@ -222,7 +220,6 @@ fn type_name(kind: PositionKind) -> String {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
 

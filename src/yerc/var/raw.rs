@@ -5,24 +5,16 @@ use std::collections::HashMap;
 use super::position_word::with_field;
 use super::table::{Variables, is_undefined};
 use crate::item_requests::ReadError;
-use crate::link::Link;
 use crate::prelude::*;
 use armctl_controller::yerc::query::ReadVariable;
-use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::table::service;
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
 use armctl_frame::store::describe_change;
 
 /// Asks the user to confirm a raw request that writes positions. `intent` is the text for a request that armctl cannot
 /// decode.
-pub async fn confirm_raw(
-    link: &mut Link,
-    confirmer: &Confirmer<'_>,
-    request: &Request,
-    intent: String,
-) -> Result<(), Failure> {
+pub async fn confirm_raw(link: &mut Link, confirmer: &Confirmer<'_>, request: &Request, intent: String) -> Result<()> {
     let Some(references) = references(request) else { return confirmer.confirm(&Change::new(intent)).await };
     let TaughtPositions { positions, has_unread } = read_taught(link, &references).await?;
     let new: Vec<Option<(Reference, Value)>> = references
@@ -47,7 +39,7 @@ struct TaughtPositions {
 }
 
 /// Reads positions one by one, because each can be undefined. A dry run records the requests.
-async fn read_taught(link: &mut Link, references: &[Reference]) -> Result<TaughtPositions, Failure> {
+async fn read_taught(link: &mut Link, references: &[Reference]) -> Result<TaughtPositions> {
     let mut taught = TaughtPositions { positions: HashMap::new(), has_unread: false };
     for reference in references {
         let question = ReadVariable::new(reference.kind, reference.number);

@@ -1,18 +1,14 @@
 //! `yerc var set`.
 
-use std::path::PathBuf;
 use std::str::FromStr;
 
 use super::cells::LAST_TOOL;
 use super::position_word::Word;
 use super::table::{Draft, StringForm, Variables};
-use crate::complete;
-use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::names::Kind;
 use armctl_controller::user_input::{self, integer};
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
-use armctl_frame::names;
 use armctl_frame::store::{Row, TableWrite, WrittenOf, write};
 use armctl_frame::teach::parse_printed_position;
 
@@ -159,7 +155,7 @@ impl Command for Set {
         if is_position { Risk::Destroy } else { Risk::Write }
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenOf<Variables>, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenOf<Variables>> {
         let Context { link, screen, robot, confirmer, .. } = context;
         let mut table = Variables::open(link, &self.form).await?;
         let keys: Vec<Reference> = self.assignments.iter().map(|assignment| assignment.reference).collect();
@@ -172,7 +168,7 @@ impl Command for Set {
 impl Set {
     /// New content of each variable. If a position is written completely, single words for it are merged into the
     /// position.
-    fn rows(&self, table: &Variables) -> Result<Vec<Row<Variables>>, Failure> {
+    fn rows(&self, table: &Variables) -> Result<Vec<Row<Variables>>> {
         let mut rows: Vec<Row<Variables>> = Vec::new();
         let repeated = |key| Failure::usage(format!("{key} appears twice")).hint("type one value for each variable");
         for Assignment { reference, input } in &self.assignments {
@@ -200,7 +196,7 @@ impl Set {
     }
 }
 
-fn value_of(table: &Variables, reference: Reference, input: &Input) -> Result<Value, Failure> {
+fn value_of(table: &Variables, reference: Reference, input: &Input) -> Result<Value> {
     let wrong = |error: String| Failure::usage(format!("{reference}: {error}"));
     match input {
         Input::Ready(value) => Ok(value.clone()),

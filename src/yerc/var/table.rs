@@ -7,11 +7,7 @@ use super::cells::{self, Cells};
 use super::position_word::{Word, different_words};
 use super::value::Data;
 use crate::batch_split::{BatchSplit, read_in_batches};
-use crate::complete;
-use crate::control_commands::usage;
 use crate::item_requests::ReadError;
-use crate::item_requests::read_failure;
-use crate::link::{Link, Yerc};
 use crate::prelude::*;
 use crate::var::position::stored_position;
 use armctl_controller::names::Kind;
@@ -99,12 +95,12 @@ impl Variables {
     }
 
     /// Requests that write these values.
-    fn steps(values: impl Iterator<Item = (Reference, Value)>) -> Result<Vec<WriteStep>, Failure> {
+    fn steps(values: impl Iterator<Item = (Reference, Value)>) -> Result<Vec<WriteStep>> {
         plan_writes(&values.map(|(key, value)| (key.number, value)).collect::<Vec<_>>()).map_err(usage)
     }
 
     /// In a dry run, records a write that depends on the content of the variable.
-    fn plan_merged(&self, link: &mut Link, key: Reference, draft: &Draft) -> Result<(), Failure> {
+    fn plan_merged(&self, link: &mut Link, key: Reference, draft: &Draft) -> Result<()> {
         let reference = self.in_form(key);
         let (both, about) = match draft {
             Draft::Whole(_) => return Ok(()),
@@ -188,12 +184,12 @@ impl Store for Variables {
         key.to_string()
     }
 
-    async fn open(link: &mut Link, options: &StringForm) -> Result<Self, Failure> {
+    async fn open(link: &mut Link, options: &StringForm) -> Result<Self> {
         Ok(Self { is_short: options.is_short, ..Self::with_encoding(link.encoding) })
     }
 
     /// The model is read from the controller only if there are strings.
-    async fn prepare(&mut self, link: &mut Link, keys: &[Reference]) -> Result<(), Failure> {
+    async fn prepare(&mut self, link: &mut Link, keys: &[Reference]) -> Result<()> {
         let forms = |model| Self { model, ..*self }.forms(keys);
         link.model_for(|model| Ok::<_, Infallible>(forms(model))).await.map(|model| self.model = model)
     }
@@ -249,7 +245,7 @@ impl Store for Variables {
             && UNDEFINED.iter().any(|code| failure.code.as_deref() == Some(&status::added_text(*code)))
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Reference]) -> Result<Answers<Value>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Reference]) -> Result<Answers<Value>> {
         let wanted = self.forms(keys);
         let progress = (keys.len() > 1).then(|| screen.spinner("reading variables"));
         // Each position can be undefined. For other kinds, the valid numbers end somewhere in the range.
@@ -311,7 +307,7 @@ impl Writable for Variables {
         }
     }
 
-    fn complete_draft(&self, key: Reference, draft: &Draft, old: Option<&Value>) -> Result<Value, Failure> {
+    fn complete_draft(&self, key: Reference, draft: &Draft, old: Option<&Value>) -> Result<Value> {
         let wrong =
             |why: String| Failure::usage(format!("{key}: {why}")).hint("correct the value; nothing was written");
         match (draft, old) {
@@ -332,7 +328,7 @@ impl Writable for Variables {
         }
     }
 
-    async fn read_old(&self, link: &mut Link, screen: &Screen, rows: &[Row<Self>]) -> Result<Answers<Value>, Failure> {
+    async fn read_old(&self, link: &mut Link, screen: &Screen, rows: &[Row<Self>]) -> Result<Answers<Value>> {
         let keys: Vec<Reference> = rows.iter().map(|(key, _)| *key).collect();
         self.read(link.for_purpose(OLD_VALUE), screen, &keys).await
     }
@@ -350,7 +346,7 @@ impl Writable for Variables {
         alone.iter().map(|index| vec![*index]).chain(blocks).collect()
     }
 
-    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<()> {
         let whole = rows.iter().filter_map(|(key, draft)| match draft {
             Draft::Whole(value) => Some((*key, value.clone())),
             Draft::Fields(_) | Draft::Words(_) => None,
@@ -379,7 +375,7 @@ impl Writable for Variables {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<()> {
         if let [row] = rows
             && let Some(field) = single_word(row).and_then(|word| word.field(row.0))
         {

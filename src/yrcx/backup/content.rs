@@ -1,28 +1,22 @@
 //! The parts of a controller as the text files of a backup.
 
-use std::collections::BTreeSet;
-use std::path::Path;
-
 use serde::Deserialize;
 
 use super::parts::Part;
 use super::save::{MAX_UNDEFINED_RUN, gap_after};
 use crate::confirmed_write::read_current;
 use crate::data::{Hands, Pallets, PointSheet, Points, Shifts};
-use crate::link::{Link, Yrcx};
 use crate::number_arguments::runs;
 use crate::numbered_tables::Numbered;
 use crate::param::{Parameters, Setting};
 use crate::prelude::*;
 use crate::read_requests::{ask_each, is_undefined};
-use crate::refusal::BuildOrder as _;
 use crate::robot_settings::Settings;
 use crate::single_command::format_field;
 use crate::var::Variables;
 use armctl_controller::yrcx::table::Command;
 use armctl_frame::backup::manifest::{About, Entry};
 use armctl_frame::backup::parts::Table;
-use armctl_frame::settings::target::Family;
 use armctl_frame::store::{self, part_text};
 use armctl_frame::text_files;
 
@@ -62,7 +56,7 @@ impl About for Controller {
 
 impl Controller {
     /// Reads the software version and the robots from the controller.
-    pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
+    pub async fn ask(link: &mut Link) -> Result<Self> {
         let versions = link.ask(&Command::Versions.order().valid_order()?).await?.values;
         let told = |key| format_field(Command::Versions, &versions, key).unwrap_or_default();
         let software = format!("{} {}", told(Key::HostVersion), told(Key::HostRevision));
@@ -84,7 +78,7 @@ impl Controller {
     }
 
     /// Notes the requests of [`ask`](Self::ask) in a dry run.
-    pub fn plan(link: &mut Link) -> Result<(), Failure> {
+    pub fn plan(link: &mut Link) -> Result<()> {
         link.plan(&Command::Versions.order().valid_order()?, "versions");
         for robot in 1..=4_u8 {
             link.plan(&of_robot(Command::ServoStatus, robot).valid_order()?, &format!("axes of robot {robot}"));
@@ -125,7 +119,7 @@ fn plan_existing(link: &mut Link, order: &Order, about: &str) {
 }
 
 /// Notes the requests that read a part in a dry run. `points` are the points that the user selected.
-pub async fn plan(link: &mut Link, screen: &Screen, part: Part, points: Option<&BTreeSet<i32>>) -> Result<(), Failure> {
+pub async fn plan(link: &mut Link, screen: &Screen, part: Part, points: Option<&BTreeSet<i32>>) -> Result<()> {
     let orders = match part {
         Part::Settings(robot) => Settings { robot }.read_orders(&Settings::all())?,
         Part::Parameters(robot) => {
@@ -164,12 +158,7 @@ pub async fn plan(link: &mut Link, screen: &Screen, part: Part, points: Option<&
 }
 
 /// Reads a part, except points.
-pub async fn read(
-    link: &mut Link,
-    screen: &Screen,
-    part: Part,
-    controller: &Controller,
-) -> Result<store::Text, Failure> {
+pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Controller) -> Result<store::Text> {
     match part {
         Part::Info => {
             let text = info(link, screen, controller).await?;
@@ -190,11 +179,7 @@ pub async fn read(
     }
 }
 
-async fn all_rows<S: Writable<Family = Yrcx>>(
-    link: &mut Link,
-    screen: &Screen,
-    table: S,
-) -> Result<store::Text, Failure> {
+async fn all_rows<S: Writable<Family = Yrcx>>(link: &mut Link, screen: &Screen, table: S) -> Result<store::Text> {
     rows(link, screen, &table, &S::all()).await
 }
 
@@ -203,7 +188,7 @@ async fn rows<S: Writable<Family = Yrcx>>(
     screen: &Screen,
     table: &S,
     keys: &[S::Key],
-) -> Result<store::Text, Failure> {
+) -> Result<store::Text> {
     part_text(table, keys, existing_rows(link, screen, table, keys).await?)
 }
 
@@ -214,7 +199,7 @@ async fn existing_rows<S: Writable<Family = Yrcx>>(
     screen: &Screen,
     table: &S,
     keys: &[S::Key],
-) -> Result<Vec<Result<Option<S::Wire>, Failure>>, Failure> {
+) -> Result<Vec<Result<Option<S::Wire>>>> {
     let rows = table.read(link, screen, keys).await?.rows;
     let certain = rows.into_iter().map(|row| match row {
         Err(failure) if !S::is_undefined(&failure) => Err(failure),
@@ -239,7 +224,7 @@ pub async fn read_points(
     numbers: &[i32],
     always: &BTreeSet<i32>,
     mut gap: Option<usize>,
-) -> Result<Text, Failure> {
+) -> Result<Text> {
     let table = PointSheet::default();
     let mut progress = screen.items_progress("reading points", numbers.len() as u64);
     let (mut asked, mut found, mut rest) = (Vec::new(), Vec::new(), numbers);
@@ -261,11 +246,11 @@ pub async fn read_points(
 }
 
 /// Requests of the information.
-fn info_orders() -> Result<[Order; 2], Failure> {
+fn info_orders() -> Result<[Order; 2]> {
     Ok([Command::Versions.order().valid_order()?, Command::Slots.order().with(Key::Controller, 1).valid_order()?])
 }
 
-async fn info(link: &mut Link, screen: &Screen, controller: &Controller) -> Result<String, Failure> {
+async fn info(link: &mut Link, screen: &Screen, controller: &Controller) -> Result<String> {
     let mut text = String::from("# Information about the controller. It is not written back.\n");
     let mut add = |name: &str, value: String| text.push_str(&format!("{name} = {value:?}\n"));
     let orders = info_orders()?;
@@ -287,23 +272,23 @@ async fn info(link: &mut Link, screen: &Screen, controller: &Controller) -> Resu
 }
 
 /// Reads and checks the file of a part.
-pub fn load(part: Part, folder: &Path) -> Result<Option<Table<Yrcx>>, Failure> {
+pub fn load(part: Part, folder: &Path) -> Result<Option<Table<Yrcx>>> {
     let path = folder.join(part.file());
     let bytes = text_files::read(&path)?;
     part.table(&bytes).map_err(|errors| text_files::file_failure(&text_files::display_path(&path), &errors))
 }
 
 /// Numbers of the points in a file.
-pub fn defined(part: Part, folder: &Path) -> Result<Vec<i32>, Failure> {
+pub fn defined(part: Part, folder: &Path) -> Result<Vec<i32>> {
     let path = folder.join(part.file());
     store::keys_of::<PointSheet>(&path, &text_files::read(&path)?)
 }
 
 /// Points that the pallet file refers to: five for each pallet (4.3.3).
-pub fn points_of_pallets(folder: &Path) -> Result<BTreeSet<i32>, Failure> {
+pub fn points_of_pallets(folder: &Path) -> Result<BTreeSet<i32>> {
     let table = Numbered::<Pallets>::default();
     let rows = store::rows_of_file(&table, &folder.join(Part::Pallets.file()))?;
     let first = |(number, draft)| Ok(table.complete_draft(number, &draft, None)?.values().int(Key::FirstPoint));
-    let first = rows.into_iter().map(first).collect::<Result<Vec<_>, Failure>>()?;
+    let first = rows.into_iter().map(first).collect::<Result<Vec<_>>>()?;
     Ok(first.into_iter().flatten().flat_map(|first| first..first + 5).collect())
 }

@@ -2,12 +2,10 @@
 
 use super::content::{self, Controller};
 use super::parts::Part;
-use crate::link::{Link, Yrcx};
 use crate::prelude::*;
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::parts::{ReplacedValues, Table, compare_all, overwriting, write_all};
 use armctl_frame::backup::{NOT_CHOSEN, NOT_MACHINE, RestoreReport, RestoreSelection, would_leave, would_write};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::file::FileItem;
 
 /// A part with the rows to be written.
@@ -17,7 +15,7 @@ struct Job {
 }
 
 /// Restores a backup.
-pub async fn restore(context: Context<'_, Yrcx>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
+pub async fn restore(context: Context<'_, Yrcx>, restoring: &RestoreSelection) -> Result<RestoreReport> {
     let Context { link, screen, confirmer, .. } = context;
     let RestoreSelection { folder, only, machine, force } = restoring;
     link.reject_unit("a backup contains the whole controller")?;
@@ -75,7 +73,7 @@ fn plan_items(link: &mut Link, saved: impl Iterator<Item = Part>, jobs: &[Job], 
 }
 
 /// Checks that the controller can accept this backup now: no program is running, and the robots are the same.
-async fn check_origin(link: &mut Link, backup: &Controller, force: bool) -> Result<(), Failure> {
+async fn check_origin(link: &mut Link, backup: &Controller, force: bool) -> Result<()> {
     let image = link.look().await?;
     if output::PROGRAM_RUNNING.is_on(&image) {
         return Err(Failure::new(
@@ -95,7 +93,7 @@ async fn check_origin(link: &mut Link, backup: &Controller, force: bool) -> Resu
 }
 
 /// Notes the requests of all comparisons, then those of all writes.
-async fn dry_run(link: &mut Link, screen: &Screen, jobs: &mut [Job]) -> Result<RestoreReport, Failure> {
+async fn dry_run(link: &mut Link, screen: &Screen, jobs: &mut [Job]) -> Result<RestoreReport> {
     Controller::plan(link)?;
     for table in tables(jobs) {
         table.compare(link, screen).await?;

@@ -1,19 +1,15 @@
 //! `yrcx backup`.
 
-use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::content::{self, Controller, Text};
 use super::parts::{Part, THOUSAND};
 use crate::data::PointSheet;
-use crate::link::Link;
-use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_frame::backup::arguments::BackupOptions;
 use armctl_frame::backup::manifest::{Entry, LeftOut};
 use armctl_frame::backup::save::{self, BackupWriter, Task, interrupted_failure};
 use armctl_frame::backup::{BackupReport, Only, SaveOptions};
-use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::file::{FileItem, State};
 use armctl_frame::store::{self, Store as _};
 
@@ -45,14 +41,14 @@ impl Command for Backup {
     type Report = BackupReport;
     const ID: &'static str = "yrcx.backup";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<BackupReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<BackupReport> {
         let points = self.points.iter().map(|range| format!("{OF_POINTS}{range}"));
         back_up(context, self.options.making(points)).await
     }
 }
 
 /// Makes a backup.
-pub async fn back_up(context: Context<'_, Yrcx>, making: SaveOptions) -> Result<BackupReport, Failure> {
+pub async fn back_up(context: Context<'_, Yrcx>, making: SaveOptions) -> Result<BackupReport> {
     let Context { link, screen, robot, several, .. } = context;
     link.reject_unit("a backup contains the whole controller")?;
     let task = Task::new(making, robot, several)?;
@@ -71,7 +67,7 @@ struct Selection {
 }
 
 impl Selection {
-    fn of(scope: &[String]) -> Result<Self, Failure> {
+    fn of(scope: &[String]) -> Result<Self> {
         let ranges = scope.iter().filter_map(|word| word.strip_prefix(OF_POINTS));
         let ranges = ranges.map(PointSheet::keys).collect::<Result<Vec<_>, _>>().map_err(Failure::usage)?;
         let points = (!ranges.is_empty()).then(|| ranges.concat().into_iter().collect());
@@ -85,7 +81,7 @@ impl Selection {
     }
 }
 
-async fn dry_run(link: &mut Link, screen: &Screen, selection: &Selection) -> Result<BackupReport, Failure> {
+async fn dry_run(link: &mut Link, screen: &Screen, selection: &Selection) -> Result<BackupReport> {
     Controller::plan(link)?;
     let parts = Part::without_points(1..=4).chain([Part::Points(0)]);
     for part in parts.filter(|part| selection.has(*part)) {
@@ -99,7 +95,7 @@ async fn save(
     (screen, robot): (&Screen, &Robot),
     task: &Task<Controller>,
     selection: Selection,
-) -> Result<BackupReport, Failure> {
+) -> Result<BackupReport> {
     let controller = Controller::ask(link).await?;
     let robots = controller.robots.clone();
     let list = task.begin((screen, robot), controller.clone(), |earlier, _| earlier.controller.robots == robots)?;
@@ -129,7 +125,7 @@ struct Reading<'a> {
 
 impl Reading<'_> {
     /// Reads these parts, then the points; `false` if the work ended early.
-    async fn all(&mut self, parts: &[Part]) -> Result<bool, Failure> {
+    async fn all(&mut self, parts: &[Part]) -> Result<bool> {
         for part in parts {
             let Self { link, screen, controller, list, .. } = self;
             let read = async {

@@ -1,12 +1,5 @@
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use std::time::Duration;
-
-use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::link::Link;
-use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::testing::{frames, quiet, resolved, risk, words};
 use armctl_frame::Family as _;
@@ -43,7 +36,7 @@ impl Workspace {
     }
 
     /// Runs a command line. `@` in the line is replaced by the folder.
-    fn run(&mut self, line: &str) -> Result<(Value, Option<Failure>), Failure> {
+    fn run(&mut self, line: &str) -> Result<(Value, Option<Failure>)> {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>())?;
         let Self { runtime, robot, link, .. } = self;

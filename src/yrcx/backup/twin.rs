@@ -1,11 +1,9 @@
 //! Start state of a simulator from a backup.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use super::content::{Controller, load};
 use super::parts::Part;
-use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Words};
 use armctl_controller::yrcx::simulator::Start;
@@ -20,7 +18,7 @@ pub const UNKNOWN: &str = "a backup contains no programs, arms, pulses per mm, p
                            the twin has those of a new simulator";
 
 /// Start state with the data of a backup.
-pub fn start(folder: &Path) -> Result<Start, Failure> {
+pub fn start(folder: &Path) -> Result<Start> {
     let manifest: Manifest<Controller> = manifest::open_existing(folder)?;
     let saved = |part: &Part| manifest.entry(&part.to_string()).is_some_and(|entry| entry.copy.is_some());
     let refused = |why: String| impossible(folder, &why);
@@ -38,7 +36,7 @@ pub fn start(folder: &Path) -> Result<Start, Failure> {
     }
     let start = Start::parse(&state).map_err(refused)?;
     let parts = Part::in_order_of_writing().filter(saved).map(|part| load(part, folder));
-    let mut tables = parts.filter_map(Result::transpose).collect::<Result<Vec<Table<Yrcx>>, Failure>>()?;
+    let mut tables = parts.filter_map(Result::transpose).collect::<Result<Vec<Table<Yrcx>>>>()?;
     let frames = frames(&mut tables)?;
     let words: Vec<Words> = frames.iter().filter_map(|frame| words(&frame["wi"])).collect();
     let writes = |words: &&Words| Row::from_word(words[0]).is_some_and(|row| row.risk > Risk::Read);
@@ -46,7 +44,7 @@ pub fn start(folder: &Path) -> Result<Start, Failure> {
 }
 
 /// Command words of a planned frame.
-fn words(frame: &serde_json::Value) -> Option<Words> {
+fn words(frame: &Value) -> Option<Words> {
     let mut words = [0; COMMAND_WORDS];
     let texts = frame.as_array().filter(|texts| texts.len() == COMMAND_WORDS)?;
     for (word, text) in words.iter_mut().zip(texts) {

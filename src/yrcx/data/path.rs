@@ -1,11 +1,7 @@
 //! `yrcx point list --path`: points as a picture.
 
-use std::collections::BTreeMap;
-use std::path::Path;
-
 use super::{PointSheet, Points};
 use crate::backup::Controller;
-use crate::link::Yrcx;
 use crate::numbered_tables::{Kind as _, Numbered};
 use crate::prelude::*;
 use armctl_frame::backup::manifest::open_existing;
@@ -30,21 +26,18 @@ impl Command for PointPath {
     type Family = Yrcx;
     type Report = PathReport;
     const ID: &'static str = "yrcx.point.path";
+    const USES_FILES: bool = true;
 
     fn takes_robot(&self) -> bool {
-        self.options.from().is_none()
+        self.options.from.is_none()
     }
 
-    fn uses_files(&self) -> bool {
-        true
-    }
-
-    fn run_alone(&self) -> Result<PathReport, Failure> {
+    fn run_alone(&self) -> Result<PathReport> {
         self.options.check(false)?;
-        self.report(&self.points_of(self.options.from().unwrap_or(Path::new(".")))?)
+        self.report(&self.points_of(self.options.from.as_deref().unwrap_or(Path::new(".")))?)
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<PathReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<PathReport> {
         let Context { link, screen, several, .. } = context;
         self.options.check(several)?;
         let table = Numbered::<Points>::default();
@@ -62,7 +55,7 @@ impl Command for PointPath {
 
 impl PointPath {
     /// The points of a backup that the user typed.
-    fn points_of(&self, folder: &Path) -> Result<Vec<(i32, FourAxes)>, Failure> {
+    fn points_of(&self, folder: &Path) -> Result<Vec<(i32, FourAxes)>> {
         let manifest = open_existing::<Controller>(folder)?;
         let copies = manifest.files.iter().filter_map(|entry| entry.copy.as_ref());
         let mut all = BTreeMap::new();
@@ -72,9 +65,9 @@ impl PointPath {
         Ok(self.numbers.iter().filter_map(|number| Some((*number, all.remove(number)?))).collect())
     }
 
-    fn report(&self, points: &[(i32, FourAxes)]) -> Result<PathReport, Failure> {
+    fn report(&self, points: &[(i32, FourAxes)]) -> Result<PathReport> {
         let new = motion(points, None);
-        let old = self.options.compare().map(|folder| self.points_of(folder)).transpose()?;
+        let old = self.options.compare.as_deref().map(|folder| self.points_of(folder)).transpose()?;
         let old = old.map(|points| motion(&points, Some(new.unit)));
         self.options.report(Drawing::new(new, old))
     }

@@ -1,12 +1,9 @@
 //! `yrcx point` (4.3.1).
 
-use std::path::{Path, PathBuf};
-
 use clap::ArgGroup;
 
 use super::path::PointPath;
 use super::sheet::PointSheet;
-use crate::link::Yrcx;
 use crate::number_arguments::single;
 use crate::numbered_tables::{Kind, Numbered};
 use crate::position::{Unit, mm, position, unit_of};
@@ -114,7 +111,7 @@ impl Command for Set {
     const RISK: Risk = Risk::Destroy;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WrittenOf<Numbered<Points>>, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WrittenOf<Numbered<Points>>> {
         let Context { robot, link, screen, confirmer, .. } = context;
         let Given { unit, four, hand } = self.given()?;
         let table = Numbered::<Points>::default();
@@ -135,7 +132,7 @@ struct Given {
 }
 
 impl Set {
-    fn given(&self) -> Result<Given, Failure> {
+    fn given(&self) -> Result<Given> {
         match (&self.mm, &self.pulse, &self.position) {
             (Some(mm), ..) => Ok(Given { unit: "mm", four: mm.clone(), hand: self.hand.clone() }),
             (None, Some(pulse), _) => Ok(Given { unit: "pulse", four: pulse.clone(), hand: None }),
@@ -154,7 +151,7 @@ fn four(text: &str) -> Result<Four, String> {
 }
 
 /// Reads a point from the output of `position --json` or `point get --json`.
-fn printed_point(file: &Path) -> Result<Given, Failure> {
+fn printed_point(file: &Path) -> Result<Given> {
     let text = parse_printed_position(file)?;
     let words: Vec<&str> = text.split_whitespace().collect();
     let (unit, axes, hand) = match words[..] {

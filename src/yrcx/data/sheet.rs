@@ -1,10 +1,8 @@
 //! Points with their comments, as a spreadsheet has them: `yrcx point dump` and `restore`.
 
 use std::collections::{HashMap, HashSet};
-use std::path::Path;
 
 use super::{Comments, Points};
-use crate::link::{Link, Yrcx};
 use crate::numbered_tables::{Draft as Texts, Kind as _, Numbered, Row};
 use crate::prelude::*;
 use crate::read_requests::plan_each;
@@ -55,7 +53,7 @@ impl PointSheet {
     ///
     /// # Errors
     /// The file cannot be read, or has mistakes.
-    pub fn points_in(path: &Path) -> Result<Vec<(i32, FourAxes)>, Failure> {
+    pub fn points_in(path: &Path) -> Result<Vec<(i32, FourAxes)>> {
         let table = Self::default();
         let mut points = Vec::new();
         for (number, draft) in rows_of_file(&table, path)? {
@@ -72,14 +70,14 @@ impl PointSheet {
         screen: &Screen,
         (numbers, has_points): (&[i32], bool),
         commented: &[i32],
-    ) -> Result<Answers<Content>, Failure> {
+    ) -> Result<Answers<Content>> {
         if link.is_dry_run() {
             let points = numbers.iter().filter(|_| has_points).map(|number| Numbered::<Points>::read_order(*number));
             let comments = commented.iter().map(|number| Numbered::<Comments>::read_order(*number));
-            plan_each(link, &points.chain(comments).collect::<Result<Vec<_>, Failure>>()?)?;
+            plan_each(link, &points.chain(comments).collect::<Result<Vec<_>>>()?)?;
         }
         let mut asked = numbers.len();
-        let points: Vec<Result<Option<Row>, Failure>> = if has_points {
+        let points: Vec<Result<Option<Row>>> = if has_points {
             let answers = self.points.read(link, screen, numbers).await?;
             asked = answers.asked;
             answers.rows
@@ -92,7 +90,7 @@ impl PointSheet {
         let comments =
             if commented.is_empty() { Vec::new() } else { self.comments.read(link, screen, &commented).await?.rows };
         let mut comments: HashMap<i32, _> = commented.into_iter().zip(comments).collect();
-        let content = |(number, point): (&i32, Result<Option<Row>, Failure>)| {
+        let content = |(number, point): (&i32, Result<Option<Row>>)| {
             let point = point?;
             let comment = match comments.remove(number).transpose() {
                 Err(failure) if !Self::is_undefined(&failure) => return Err(failure),
@@ -127,7 +125,7 @@ impl Store for PointSheet {
         Numbered::<Points>::names(numbers)
     }
 
-    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self> {
         Ok(Self::default())
     }
 
@@ -165,7 +163,7 @@ impl Store for PointSheet {
         if added == 0 { Vec::new() } else { vec![format!("New points are added: {added}.")] }
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Content>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Content>> {
         self.read_parts(link, screen, (numbers, true), numbers).await
     }
 }
@@ -186,7 +184,7 @@ impl Writable for PointSheet {
         Ok(Draft { point, comment })
     }
 
-    fn complete_draft(&self, number: i32, draft: &Draft, old: Option<&Content>) -> Result<Content, Failure> {
+    fn complete_draft(&self, number: i32, draft: &Draft, old: Option<&Content>) -> Result<Content> {
         let held = old.cloned().unwrap_or(Content { point: None, comment: None });
         let point = match &draft.point {
             Some(texts) => Some(self.points.complete_draft(number, texts, held.point.as_ref())?),
@@ -199,12 +197,7 @@ impl Writable for PointSheet {
         Ok(Content { point, comment })
     }
 
-    async fn read_old(
-        &self,
-        link: &mut Link,
-        screen: &Screen,
-        rows: &[TableRow<Self>],
-    ) -> Result<Answers<Content>, Failure> {
+    async fn read_old(&self, link: &mut Link, screen: &Screen, rows: &[TableRow<Self>]) -> Result<Answers<Content>> {
         let numbers: Vec<i32> = rows.iter().map(|(number, _)| *number).collect();
         let has_points = rows.iter().any(|(_, draft)| draft.point.is_some());
         let commented = rows.iter().filter(|(_, draft)| draft.comment.is_some());
@@ -212,7 +205,7 @@ impl Writable for PointSheet {
         self.read_parts(link, screen, (&numbers, has_points), &commented).await
     }
 
-    async fn plan(&self, link: &mut Link, rows: &[TableRow<Self>]) -> Result<(), Failure> {
+    async fn plan(&self, link: &mut Link, rows: &[TableRow<Self>]) -> Result<()> {
         for (number, Draft { point, comment }) in rows {
             if let Some(texts) = point {
                 self.points.plan(link, &[(*number, texts.clone())]).await?;
@@ -224,7 +217,7 @@ impl Writable for PointSheet {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<()> {
         for (number, old, new) in rows {
             let (old_point, old_comment) = old.map_or((None, None), |old| (old.point.as_ref(), old.comment.as_ref()));
             let mut is_half = false;
@@ -247,7 +240,6 @@ impl Writable for PointSheet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_controller::yrcx::value::Values;
 
     /// Returns point 7 as it is stored: in mm and left-handed, or in pulses.
     fn stored_point(texts: [&str; 6]) -> Content {

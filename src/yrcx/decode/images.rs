@@ -1,16 +1,14 @@
 //! Images and remote commands in a capture, with the fieldbus messages around them.
 
 use std::collections::HashMap;
-use std::fmt;
-use std::sync::Arc;
 
 use crate::field_row::FieldRow;
+use crate::prelude::basics::*;
 use armctl_controller::text::hex;
 use armctl_controller::yrcx::answer::Status;
 use armctl_controller::yrcx::describe::{Description, FieldNote, answer, command};
-use armctl_controller::yrcx::image::{Image, Words};
+use armctl_controller::yrcx::image::Words;
 use armctl_controller::yrcx::image_changes::{Change, changes};
-use armctl_controller::yrcx::signal::Side;
 use armctl_frame::decode::capture::{DecodedCapture, DecodedMessage, cut, note};
 use armctl_transport::capture::Message;
 use armctl_transport::tap::Direction;

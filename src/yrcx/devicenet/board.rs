@@ -1,13 +1,9 @@
 //! Explicit messages to the DeviceNet node of a controller. They start no polling of the node.
 
-use std::time::Duration;
-
 use super::check;
 use super::connect::{adapter, request_timeout};
 use crate::fieldbus::{BusBoard, Checked, ConnectionParameters};
-use crate::link_error::not_open;
-use crate::prelude::*;
-use armctl_frame::face::layers::Layers;
+use crate::prelude::basics::*;
 use armctl_frame::settings::target::bus::Scheme;
 use armctl_frame::settings::target::devicenet::{BUS, DeviceNet};
 use armctl_transport::devicenet::error::Error;
@@ -24,7 +20,8 @@ const LISTEN: Duration = Duration::from_secs(1);
 /// DeviceNet node of a controller. The first request opens the adapter.
 #[derive(Debug)]
 pub struct Board {
-    node: DeviceNet,
+    /// Options of the URL.
+    pub node: DeviceNet,
     scheme: &'static Scheme,
     label: String,
     timeout: Duration,
@@ -47,13 +44,8 @@ impl Board {
         })
     }
 
-    /// Options of the URL.
-    pub fn node(&self) -> &DeviceNet {
-        &self.node
-    }
-
     /// Opens the adapter, if necessary. armctl is then a node of the network.
-    pub async fn network(&mut self) -> Result<Network, Failure> {
+    pub async fn network(&mut self) -> Result<Network> {
         if let Some(network) = &self.network {
             return Ok(network.clone());
         }
@@ -64,13 +56,13 @@ impl Board {
     }
 
     /// Finds all nodes that answer.
-    pub async fn nodes(&mut self) -> Result<Vec<Node>, Failure> {
+    pub async fn nodes(&mut self) -> Result<Vec<Node>> {
         let found = self.network().await?.find().await;
         Ok(found.map_err(|error| self.failure(error))?.into_iter().map(Node::from).collect())
     }
 
     /// Opens the explicit connection, if necessary.
-    async fn connection(&mut self) -> Result<&Connection, Failure> {
+    async fn connection(&mut self) -> Result<&Connection> {
         if self.connection.is_none() {
             let network = self.network().await?;
             let purpose = Purpose::Messages { with_poll: true };
@@ -82,7 +74,7 @@ impl Board {
     }
 
     /// Reads an attribute; `None` if the node refuses it.
-    async fn get(&mut self, request: Request) -> Result<Option<Vec<u8>>, Failure> {
+    async fn get(&mut self, request: Request) -> Result<Option<Vec<u8>>> {
         let mac = self.node.mac;
         match read(self.connection().await?, mac, &request).await {
             Ok(data) => Ok(Some(data)),
@@ -91,13 +83,13 @@ impl Board {
         }
     }
 
-    async fn word(&mut self, request: Request) -> Result<Option<u16>, Failure> {
+    async fn word(&mut self, request: Request) -> Result<Option<u16>> {
         let data = self.get(request).await?;
         Ok(data.and_then(|data| data.first_chunk().copied()).map(u16::from_le_bytes))
     }
 
     /// Reads the identity object.
-    pub async fn identity(&mut self) -> Result<Identity, Failure> {
+    pub async fn identity(&mut self) -> Result<Identity> {
         let of = |attribute| Request::get(class::IDENTITY, 1, attribute);
         let vendor = self.word(of(1)).await?;
         let device_type = self.word(of(2)).await?;
@@ -117,13 +109,13 @@ impl Board {
     }
 
     /// Reads the image sizes: bytes from the node, and bytes to the node.
-    pub async fn sizes(&mut self) -> Result<(Option<u16>, Option<u16>), Failure> {
+    pub async fn sizes(&mut self) -> Result<(Option<u16>, Option<u16>)> {
         let of = |attribute| Request::get(class::CONNECTION, connection::POLL_INSTANCE.into(), attribute);
         Ok((self.word(of(7)).await?, self.word(of(8)).await?))
     }
 
     /// Reads the image with explicit messages; `None` if the node sends its image only in polls.
-    pub async fn image(&mut self) -> Result<Option<Image>, Failure> {
+    pub async fn image(&mut self) -> Result<Option<Image>> {
         let mac = self.node.mac;
         let request = match produced_size(self.connection().await?, mac).await {
             Ok(request) => request,
@@ -134,7 +126,7 @@ impl Board {
     }
 
     /// Listens to the polls of another master, and returns the image of the node.
-    pub async fn overheard(&mut self) -> Result<Option<Image>, Failure> {
+    pub async fn overheard(&mut self) -> Result<Option<Image>> {
         let mac = self.node.mac;
         let seen = self.network().await?.listen(mac, LISTEN).await.input;
         Ok(seen.and_then(|seen| Image::from_link(&seen.image)))

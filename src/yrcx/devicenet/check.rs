@@ -2,8 +2,7 @@
 
 use super::board::Board;
 use crate::fieldbus::{Checked, InLayer as _, VENDOR_ID};
-use crate::prelude::*;
-use armctl_frame::face::layers::Layers;
+use crate::prelude::basics::*;
 use armctl_transport::devicenet::can::BusState;
 
 /// Layers in the order of the check.
@@ -11,7 +10,7 @@ pub(super) const LAYERS: &[&str] = &["name", "adapter", "bus", "MAC ID", "owner"
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
 pub(super) async fn check_layers(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
-    let node = board.node().clone();
+    let node = board.node.clone();
     layers.ok("name", format!("MAC {} behind {}", node.mac, node.place));
     let network = board.network().await.in_layer("adapter")?;
     layers.ok("adapter", format!("{} at {}", node.place, node.bitrate));

@@ -1,15 +1,9 @@
 //! Discovery of DeviceNet nodes on an adapter.
 
-use std::time::Duration;
-
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-
 use super::board::Node;
 use super::connect::adapter;
 use crate::fieldbus::{self, Device, Scope, VENDOR_ID, bus_of, fields};
-use crate::link_error::not_open;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::settings::target::Bus;
 use armctl_frame::settings::target::devicenet::DeviceNet;
 use armctl_transport::devicenet::network::Network;
@@ -41,7 +35,7 @@ impl fieldbus::Search for Search {
         if self.adapters.is_empty() { Scope::Nothing } else { Scope::Network }
     }
 
-    fn search(&self, _wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>> {
+    fn search(&self, _wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>>> {
         async move {
             let mut all = Vec::new();
             for (url, bus) in &self.adapters {
@@ -59,7 +53,7 @@ impl fieldbus::Search for Search {
     }
 }
 
-fn found_node(url: &str, node: &Node) -> Result<Device, Failure> {
+fn found_node(url: &str, node: &Node) -> Result<Device> {
     let sign = if url.contains('?') { '&' } else { '?' };
     Ok(Device {
         address: format!("{url} MAC {}", node.mac),

@@ -16,7 +16,7 @@ impl BoardReport for IdentityReport {
     const ID: &'static str = "yrcx.devicenet.identity";
     const MESSAGES: &'static str = "messages that read the identity of the node";
 
-    async fn read(board: &mut Board) -> Result<Self, Failure> {
+    async fn read(board: &mut Board) -> Result<Self> {
         Ok(Self { identity: board.identity().await? })
     }
 }

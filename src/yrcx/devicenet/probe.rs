@@ -26,7 +26,7 @@ impl BoardReport for ProbeReport {
     const ID: &'static str = "yrcx.devicenet.probe";
     const MESSAGES: &'static str = "messages that read the identity and the image sizes of the node";
 
-    async fn read(board: &mut Board) -> Result<Self, Failure> {
+    async fn read(board: &mut Board) -> Result<Self> {
         let identity = match board.identity().await {
             Ok(identity) => Some(identity),
             Err(failure) if failure.kind == Kind::Refused => None,

@@ -16,7 +16,7 @@ impl BoardReport for ScanReport {
     const ID: &'static str = "yrcx.devicenet.scan";
     const MESSAGES: &'static str = "a duplicate MAC ID check for every MAC ID";
 
-    async fn read(board: &mut Board) -> Result<Self, Failure> {
+    async fn read(board: &mut Board) -> Result<Self> {
         Ok(Self { nodes: board.nodes().await? })
     }
 }

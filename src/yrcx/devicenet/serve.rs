@@ -2,12 +2,11 @@
 
 use std::iter;
 use std::net::SocketAddr;
-use std::path::Path;
 
 use super::simulated;
 use super::simulated::{Controller, FAULTS, size};
 use crate::fieldbus::{Operator, RunningSimulation, Serve, ServeOptions};
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use crate::simulated::{faults, faults_of_option};
 use armctl_frame::serve::{address, bind_failure};
 use armctl_frame::settings::target::devicenet::SLCAN;
@@ -49,10 +48,7 @@ impl Serve for ServeArgs {
         cfg!(unix)
     }
 
-    fn serve(
-        &self,
-        ServeOptions { simulator, start, link, faults }: ServeOptions<'_>,
-    ) -> Result<RunningSimulation, Failure> {
+    fn serve(&self, ServeOptions { simulator, start, link, faults }: ServeOptions<'_>) -> Result<RunningSimulation> {
         let setup = Setup::sample_controller(self.mac, self.bitrate, size(simulator));
         #[cfg(unix)]
         let terminal = link.map(|_| Listen::Pty);
@@ -74,13 +70,13 @@ impl Serve for ServeArgs {
 
 /// Creates the symbolic link to the pseudo-terminal, if requested.
 #[cfg(unix)]
-fn terminal_link(path: Option<&Path>, hub: &Hub<Controller>) -> Result<Link, Failure> {
+fn terminal_link(path: Option<&Path>, hub: &Hub<Controller>) -> Result<Link> {
     let (Some(path), Some(terminal)) = (path, hub.endpoint_addresses.get(1)) else { return Ok(None) };
     TerminalLink::create(path, terminal).map(Some)
 }
 
 #[cfg(not(unix))]
-fn terminal_link(_path: Option<&Path>, _hub: &Hub<Controller>) -> Result<Link, Failure> {
+fn terminal_link(_path: Option<&Path>, _hub: &Hub<Controller>) -> Result<Link> {
     Ok(None)
 }
 

@@ -2,14 +2,11 @@
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
-use std::time::Duration;
-
-use anyhow::Context as _;
 
 use super::bus::BUS;
+use crate::prelude::basics::*;
 use crate::simulated::{Simulated, faults_of_url, start};
 use armctl_controller::yrcx::simulator::{Simulator, Start};
-use armctl_frame::failure::Failure;
 use armctl_frame::settings::target::Sim;
 use armctl_frame::settings::target::devicenet::SLCAN;
 use armctl_transport::devicenet::can::Bitrate;
@@ -25,7 +22,7 @@ const COMPACT: &str = "devicenet-compact";
 pub(super) const MAC: u8 = 5;
 
 /// Starts a simulator behind an SLCAN adapter on the loopback interface, with the faults of the URL.
-pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>, Failure> {
+pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>> {
     let faults = faults_of_url(sim, &FAULTS)?;
     let setup = Setup::sample_controller(Mac::new(MAC).unwrap_or_default(), Bitrate::K500, size(sim.bus));
     let listen = Listen::Tcp(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));

@@ -4,10 +4,8 @@ use std::net::SocketAddrV4;
 
 use super::{check, connect};
 use crate::fieldbus::{BusBoard, Checked, ConnectionParameters};
-use crate::link_error::not_open;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::text;
-use armctl_frame::face::layers::Layers;
 use armctl_frame::settings::target::eip::{self, EipRole, SCHEME};
 use armctl_transport::eip::ASSEMBLY;
 use armctl_transport::eip::client::Client;
@@ -29,8 +27,10 @@ const USUAL_INPUT: u32 = 100;
 #[derive(Debug)]
 pub struct Board {
     client: Client,
-    eip: eip::Eip,
-    label: String,
+    /// Options of the URL.
+    pub eip: eip::Eip,
+    /// Robot in messages.
+    pub label: String,
 }
 
 impl Board {
@@ -40,23 +40,13 @@ impl Board {
         Ok(Self { client, eip, label: at.robot.label() })
     }
 
-    /// Options of the URL.
-    pub fn settings(&self) -> &eip::Eip {
-        &self.eip
-    }
-
-    /// Robot in messages.
-    pub fn label(&self) -> &str {
-        &self.label
-    }
-
     /// Returns the TCP address of the board.
     pub fn address(&self) -> SocketAddrV4 {
         self.client.target()
     }
 
     /// Reads the identity; `None` if the board does not support the request.
-    pub async fn identity(&mut self) -> Result<Option<Identity>, Failure> {
+    pub async fn identity(&mut self) -> Result<Option<Identity>> {
         match self.client.identity().await {
             Ok(identity) => Ok(identity.map(Identity::from)),
             Err(EipError::Encapsulation { .. }) => Ok(None),
@@ -65,7 +55,7 @@ impl Board {
     }
 
     /// Reads the list of services; `None` if the board does not support the request.
-    pub async fn services(&mut self) -> Result<Option<Vec<&'static str>>, Failure> {
+    pub async fn services(&mut self) -> Result<Option<Vec<&'static str>>> {
         match self.client.services().await {
             Ok(services) => Ok(services.map(|services| {
                 let known = [(5, "messages over TCP"), (8, "images over UDP")];
@@ -77,14 +67,14 @@ impl Board {
     }
 
     /// Reads an attribute, or all attributes of an instance.
-    pub async fn get(&mut self, object: Object) -> Result<Vec<u8>, Failure> {
+    pub async fn get(&mut self, object: Object) -> Result<Vec<u8>> {
         let answer = self.client.ask(object.reading(), &object.get()).await;
         let answer = answer.map_err(|error| self.failure(error))?;
         if answer.status.is_ok() { Ok(answer.data) } else { Err(self.refused(object.reading(), object, &answer)) }
     }
 
     /// Writes an attribute. The request is sent only once, so if the answer is lost, the outcome is unknown.
-    pub async fn set(&mut self, object: Object, value: &[u8]) -> Result<(), Failure> {
+    pub async fn set(&mut self, object: Object, value: &[u8]) -> Result<()> {
         // Check with a harmless request first that the board answers.
         self.services().await?;
         let answer = match self.client.ask(SETTING, &object.set(value)).await {
@@ -102,7 +92,7 @@ impl Board {
     }
 
     /// Reads the image of the controller.
-    pub async fn image(&mut self) -> Result<Image, Failure> {
+    pub async fn image(&mut self) -> Result<Image> {
         let object = Object { class: ASSEMBLY, instance: self.eip.input, attribute: Some(IMAGE) };
         let bytes = self.get(object).await?;
         let image = bytes.get(..Image::BYTES).and_then(Image::from_bytes);
@@ -114,7 +104,7 @@ impl Board {
     }
 
     /// Reads assemblies to find the existing assemblies and their sizes. `identity` is the identity of the board.
-    pub async fn survey(&mut self, identity: Option<&Identity>) -> Result<ProbeResult, Failure> {
+    pub async fn survey(&mut self, identity: Option<&Identity>) -> Result<ProbeResult> {
         let url_instances = self.url_instances();
         let exchanged = Instances { output: url_instances.input, input: url_instances.output, ..url_instances };
         let usual = Instances { output: USUAL_OUTPUT, input: USUAL_INPUT, ..url_instances };
@@ -124,14 +114,14 @@ impl Board {
 
     /// Finds the connection parameters. For this, armctl also requests connections. `identity` is the identity of the
     /// board.
-    pub async fn probe(&mut self, identity: Option<&Identity>) -> Result<ProbeResult, Failure> {
+    pub async fn probe(&mut self, identity: Option<&Identity>) -> Result<ProbeResult> {
         let url_instances = self.url_instances();
         let found = probe::probe(&mut self.client, url_instances).await.map_err(|error| self.failure(error))?;
         Ok(ProbeResult::of(&found, &self.eip, identity))
     }
 
     /// Reads whether the assemblies of the URL exist: input, output.
-    pub async fn assemblies(&mut self) -> Result<[(u32, AssemblyPresence); 2], Failure> {
+    pub async fn assemblies(&mut self) -> Result<[(u32, AssemblyPresence); 2]> {
         let Instances { output, input, .. } = self.url_instances();
         let mut found = [(input, AssemblyPresence::Unknown), (output, AssemblyPresence::Unknown)];
         for (instance, presence) in &mut found {
@@ -225,9 +215,9 @@ impl Object {
     }
 }
 
-impl std::fmt::Display for Object {
+impl fmt::Display for Object {
     /// Formats the object, for example "class 0x04 (assembly), instance 100, attribute 3".
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "class {:#04x}", self.class)?;
         if let Some((_, name)) = CLASSES.iter().find(|(class, _)| *class == self.class) {
             write!(f, " ({name})")?;

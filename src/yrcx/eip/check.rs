@@ -12,7 +12,7 @@ pub(super) const LAYERS: &[&str] = &["name", "board", "identity", "connection", 
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
 pub(super) async fn check_layers(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
-    layers.ok("name", format!("{} is {}", board.settings().host, board.address()));
+    layers.ok("name", format!("{} is {}", board.eip.host, board.address()));
     match board.services().await.in_layer("board")? {
         None => layers.warn(
             "board",
@@ -41,7 +41,7 @@ pub(super) async fn check_layers(board: &mut Board, layers: &mut Layers) -> Chec
     }
     match board.assemblies().await {
         Err(failure) => layers.fail("connection", &failure),
-        Ok(found) => connection(board.settings(), found, layers),
+        Ok(found) => connection(&board.eip, found, layers),
     }
     let owned = identity.is_some_and(|identity| identity.owned);
     layers.judge(
@@ -51,7 +51,7 @@ pub(super) async fn check_layers(board: &mut Board, layers: &mut Layers) -> Chec
         "stop that connection to send commands; read-only commands work in parallel",
     );
     let image = board.image().await.in_layer("inputs")?;
-    layers.ok("inputs", format!("assembly {} is readable", board.settings().input));
+    layers.ok("inputs", format!("assembly {} is readable", board.eip.input));
     Ok(Some(image))
 }
 

@@ -2,14 +2,10 @@
 
 use std::io::ErrorKind;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
-use std::time::Duration;
-
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 
 use super::board::Identity;
 use crate::fieldbus::{self, Device, Scope, VENDOR_ID, fields};
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::failure::plain;
 use armctl_frame::settings::target::eip::SCHEME;
 use armctl_transport::eip::PORT;
@@ -45,7 +41,7 @@ impl fieldbus::Search for Search {
         }
     }
 
-    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>> {
+    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>>> {
         async move {
             let mut targets = [&self.targets[..], &self.broadcast].concat();
             let is_open = targets.is_empty();
@@ -73,7 +69,7 @@ impl fieldbus::Search for Search {
     }
 }
 
-fn found_board(found: discovery::DiscoveredDevice) -> Result<Device, Failure> {
+fn found_board(found: discovery::DiscoveredDevice) -> Result<Device> {
     let (host, port) = (found.address.ip(), found.address.port());
     let scheme = SCHEME.name;
     let target = if port == PORT { format!("{scheme}://{host}") } else { format!("{scheme}://{host}:{port}") };

@@ -20,10 +20,10 @@ impl BoardReport for IdentityReport {
     const ID: &'static str = "yrcx.eip.identity";
     const MESSAGES: &'static str = "messages that read the identity and the services of the board";
 
-    async fn read(board: &mut Board) -> Result<Self, Failure> {
+    async fn read(board: &mut Board) -> Result<Self> {
         let address = board.address().to_string();
         let Some(identity) = board.identity().await? else {
-            return Err(Failure::new(Kind::Malformed, format!("{}: the board has no identity", board.label()))
+            return Err(Failure::new(Kind::Malformed, format!("{}: the board has no identity", board.label))
                 .hint("check that the address belongs to an EtherNet/IP board"));
         };
         Ok(Self { address, identity, services: board.services().await? })

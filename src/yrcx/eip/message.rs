@@ -1,12 +1,8 @@
 //! `yrcx eip get` and `yrcx eip set`: raw explicit messages.
 
-use serde_json::json;
-
 use super::board::{Board, Object, hex_pairs};
-use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_controller::text;
-use armctl_controller::user_input;
 use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
 
 /// Reads an attribute of an object, or all its attributes (Get_Attribute_Single, Get_Attributes_All).
@@ -34,7 +30,7 @@ impl Command for Get {
     const ID: &'static str = "yrcx.eip.get";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Value, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Value> {
         context.link.reject_unit_of::<Board>()?;
         let object = Object { class: self.class, instance: self.instance, attribute: self.attribute };
         let about = format!("{} of {object}", object.reading());
@@ -88,7 +84,7 @@ impl Command for Set {
         format!("set {} to {}", self.object(), hex_pairs(&self.data.0))
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport> {
         context.link.reject_unit_of::<Board>()?;
         let object = self.object();
         let (asked, about) = (object.set_bytes(&self.data.0), format!("Set_Attribute_Single of {object}"));

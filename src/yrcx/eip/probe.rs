@@ -1,9 +1,7 @@
 //! `yrcx eip probe`.
 
 use super::board::{Board, Identity, ProbeResult, warning_cell};
-use crate::link::Yrcx;
 use crate::prelude::*;
-use armctl_frame::output::csv::RowsOf;
 
 /// Finds the assemblies of the board: armctl reads every assembly from 1 to 255. It requests no connection.
 #[derive(Debug, Args)]
@@ -33,7 +31,7 @@ impl Command for Probe {
         if self.tries { Risk::Motion } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport> {
         context.link.reject_unit_of::<Board>()?;
         context.link.then("messages that read the identity and the assemblies of the board");
         if self.tries {

@@ -4,7 +4,7 @@ use std::net::SocketAddrV4;
 
 use super::simulated::{self, Controller, FAULTS};
 use crate::fieldbus::{Operator, RunningSimulation, Serve, ServeOptions};
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use crate::simulated::{faults, faults_of_option};
 use armctl_frame::serve::{address, bind_failure};
 use armctl_frame::settings::target::eip::SCHEME;
@@ -31,7 +31,7 @@ fn listen(text: &str) -> Result<SocketAddrV4, String> {
 }
 
 impl Serve for ServeArgs {
-    fn serve(&self, ServeOptions { start, faults, .. }: ServeOptions<'_>) -> Result<RunningSimulation, Failure> {
+    fn serve(&self, ServeOptions { start, faults, .. }: ServeOptions<'_>) -> Result<RunningSimulation> {
         let io_port = self.io_port.unwrap_or(if self.bind.port() == 0 { 0 } else { IO_PORT });
         let listen = AdapterAddresses { address: *self.bind.ip(), port: self.bind.port(), io_port };
         let server = simulated::serve(start, listen, faults_of_option(faults, &FAULTS)?).map_err(|error| {

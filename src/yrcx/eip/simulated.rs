@@ -2,12 +2,9 @@
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddrV4};
-use std::time::Duration;
-
-use anyhow::Context as _;
 
 use super::bus::BUS;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use crate::simulated::{Simulated, faults_of_url, start};
 use armctl_controller::yrcx::simulator::{Simulator, Start};
 use armctl_frame::settings::target::Sim;
@@ -20,7 +17,7 @@ use armctl_transport::fault::{self, FaultNames, FaultSpec, SimulatorFaults};
 use armctl_transport::image::ImagePeer;
 
 /// Starts a simulator as an adapter on the loopback interface, with the faults of the URL.
-pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>, Failure> {
+pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>> {
     let faults = faults_of_url(sim, &FAULTS)?;
     let listen = AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST);
     let server = serve(start(sim)?, listen, faults);

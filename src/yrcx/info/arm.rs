@@ -1,9 +1,7 @@
 //! `yrcx info arm` (4.7.9, 4.7.10).
 
-use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::read_requests::ask_each;
-use crate::refusal::BuildOrder as _;
 use crate::single_command::format_field;
 use armctl_frame::items;
 use armctl_frame::items::ItemError;
@@ -19,7 +17,7 @@ impl Command for Arm {
     type Report = Arms;
     const ID: &'static str = "yrcx.info.arm";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Arms, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Arms> {
         let link = context.link;
         let selected = link.draft(table::Command::ArmDesignation)?.valid_order()?;
         let current = link.draft(table::Command::ArmStatus)?.valid_order()?;

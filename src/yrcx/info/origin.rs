@@ -1,6 +1,5 @@
 //! `yrcx info origin` (4.7.11).
 
-use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::refusal::invalid_words;
 use crate::single_command::format_field;
@@ -18,7 +17,7 @@ impl Command for Origin {
     type Report = Origins;
     const ID: &'static str = "yrcx.info.origin";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Origins, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Origins> {
         let link = context.link;
         let draft = link.draft(table::Command::OriginStatus)?.with_some(Key::MotorType, self.motor.clone());
         let order = draft.build().map_err(|error| match error.place.key {

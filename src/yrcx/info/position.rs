@@ -1,15 +1,10 @@
 //! `yrcx position` (4.7.4).
 
-use std::time::Duration;
-
-use crate::link::Yrcx;
 use crate::position::{Unit, group, position};
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_frame::face::shared_commands::CommonReport;
 use armctl_frame::plot::SeriesHistory;
 use armctl_frame::robot::position::{AllPositions, Joint, Positions};
-use armctl_frame::settings::duration;
 
 /// Reads the position, once or continuously.
 #[derive(Debug, Args)]
@@ -46,7 +41,7 @@ impl Command for PositionArguments {
         self.continuous
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<RobotPosition, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<RobotPosition> {
         if self.within.is_some() && !self.continuous && self.until.is_none() {
             return Err(Failure::usage("--for needs --continuous or --until").hint("add one of them, or remove --for"));
         }

@@ -1,13 +1,9 @@
 //! Commands `yrcx info tasks` (4.7.5) and `yrcx info line` (4.7.6). One remote command reads eight tasks.
 
-use crate::complete;
-use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::program;
 use crate::read_requests::ask_each;
-use crate::refusal::BuildOrder as _;
 use crate::single_command::format_field;
-use armctl_controller::user_input;
 use armctl_frame::robot::item::{Columns, Item, Items};
 
 /// Tasks in the answer of one remote command: half of the 16 tasks.
@@ -47,12 +43,12 @@ impl TaskSelection {
         command: table::Command,
         of: impl Fn(&Values, Key) -> Option<(V, Cell)>,
         heading: &'static str,
-    ) -> Result<Items<V>, Failure> {
+    ) -> Result<Items<V>> {
         let Context { link, screen, .. } = context;
         let halves: Vec<usize> =
             (0..2).filter(|half| (1..=TASK_KEYS.len()).any(|place| self.has(half * TASK_KEYS.len() + place))).collect();
         let order = |half: &usize| link.draft(command)?.with(Key::TaskRange, *half == 1).valid_order();
-        let orders = halves.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
+        let orders = halves.iter().map(order).collect::<Result<Vec<Order>>>()?;
         let answers = ask_each(link, screen, "reading tasks", &orders).await?;
         let task = |half: usize, place: usize| half * TASK_KEYS.len() + place + 1;
         let told = |half: &usize| format!("tasks {} to {}", task(*half, 0), task(*half, TASK_KEYS.len() - 1));
@@ -92,7 +88,7 @@ impl Command for Tasks {
     type Report = Items<String>;
     const ID: &'static str = "yrcx.info.tasks";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Items<String>, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Items<String>> {
         let command = table::Command::TaskStatus;
         let of = |values: &Values, key| {
             let state = format_field(command, values, key).filter(|state| state != NO_TASK)?;
@@ -117,7 +113,7 @@ impl Command for Line {
     type Report = Items<TaskLine>;
     const ID: &'static str = "yrcx.info.line";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Items<TaskLine>, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Items<TaskLine>> {
         let of = |values: &Values, key| {
             let line = values.int(key).filter(|line| *line != 0).map(program::ProgramLine::of)?;
             let cell = Cell::number(line.describe());

@@ -1,7 +1,5 @@
 //! `yrcx info torque` (4.7.12, 4.7.18).
 
-use clap::ValueEnum;
-
 use crate::prelude::*;
 use crate::single_command::one_row;
 use armctl_controller::yrcx::table::Command;

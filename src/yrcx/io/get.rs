@@ -1,11 +1,8 @@
 //! `yrcx io get`.
 
 use super::{SignalOrWord, readables, row, word_item};
-use crate::complete;
-use crate::link::Yrcx;
 use crate::number_arguments::Series;
 use crate::prelude::*;
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoRow, IoValue, Signals};
 
 /// Reads signals and general-purpose words.
@@ -25,7 +22,7 @@ impl Command for Get {
     const ID: &'static str = "yrcx.io.get";
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals> {
         let names = names::of_robot(context.robot, context.screen);
         let given = context.link.output_image().copied();
         if given.is_none()

@@ -1,9 +1,7 @@
 //! `yrcx io list`.
 
 use super::row;
-use crate::link::Yrcx;
 use crate::prelude::*;
-use armctl_frame::names;
 use armctl_frame::robot::io::{Filter, Signals};
 
 /// Reads all signals. Inputs are listed only in a session, because only the client that sets the inputs can read them.
@@ -19,7 +17,7 @@ impl Command for List {
     const ID: &'static str = "yrcx.io.list";
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals> {
         let names = names::of_robot(context.robot, context.screen);
         let inputs = context.link.output_image().copied();
         let outputs = context.link.read_signals().await?;

@@ -26,7 +26,7 @@ impl OfflineCommand for Map {
     type Report = Addresses;
     const ID: &'static str = "yrcx.io.map";
 
-    fn run(&self, _screen: &Screen) -> Result<Addresses, Failure> {
+    fn run(&self, _screen: &Screen) -> Result<Addresses> {
         let start = |side| if side == Side::Output { self.input_start } else { self.output_start };
         let rows = bus::map(self.bus).iter().map(|place| Row::of(place, start(place.side))).collect();
         Ok(Addresses { bus: self.bus.name(), rows })

@@ -11,7 +11,6 @@ use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
 use armctl_controller::yrcx::register::Register;
 use armctl_frame::Offline;
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoItem, IoKind, IoRow};
 
 commands! {
@@ -48,8 +47,8 @@ impl SignalOrWord {
     }
 }
 
-impl std::fmt::Display for SignalOrWord {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for SignalOrWord {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Signal(signal) => signal.fmt(f),
             Self::Word(register) => register.fmt(f),

@@ -1,15 +1,10 @@
 //! `yrcx io set` and `yrcx io pulse`.
 
 use super::{ANY_INPUT, called, input, item, named_input, word_item};
-use crate::complete;
-use crate::link::Link;
-use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
-use armctl_controller::user_input;
 use armctl_controller::yrcx::procedure::Procedure;
 use armctl_controller::yrcx::register::Register;
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, WrittenSignal, WrittenSignals};
 
 /// Switches inputs of the controller one after the other, and sets general-purpose words.
@@ -109,7 +104,7 @@ impl Change {
     }
 
     /// Carries out one change, or several word changes together.
-    async fn execute(together: &[Self], link: &mut Link) -> Result<(), Failure> {
+    async fn execute(together: &[Self], link: &mut Link) -> Result<()> {
         if let [Self::Signal { signal, on, .. }] = together {
             return link.execute(switching(Procedure::set(*signal, *on))?).await.map(|_| ());
         }
@@ -130,7 +125,7 @@ impl Command for Set {
         format!("switch {}", describe(&self.changes))
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WrittenSignals, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WrittenSignals> {
         let names = names::of_robot(context.robot, context.screen);
         let shown = context.link.output_image().copied();
         let mut done = 0;
@@ -181,7 +176,7 @@ impl Command for Pulse {
         format!("switch {} on and off again", self.called())
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport> {
         let old = context.link.output_image().map(|image| self.signal.0.is_on(image));
         context.link.execute(switching(Procedure::pulse(self.signal.0))?).await?;
         let words = format!("switched {} on and off again", self.called());
@@ -190,7 +185,7 @@ impl Command for Pulse {
 }
 
 /// Returns the procedure that switches a signal; an error if the signal is an output.
-fn switching(procedure: Option<Procedure>) -> Result<Procedure, Failure> {
+fn switching(procedure: Option<Procedure>) -> Result<Procedure> {
     procedure.ok_or_else(|| {
         Failure::usage("only the controller switches its outputs")
             .hint("use `yrcx io get` to read the outputs; use `yrcx port set` to switch DO, MO and SO")

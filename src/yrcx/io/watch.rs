@@ -1,11 +1,8 @@
 //! `yrcx io watch`: signal changes as they occur.
 
 use super::row;
-use crate::complete;
-use crate::link::{Link, Yrcx};
 use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, Signals, WATCHED};
 
 /// Arguments: the outputs of the controller to watch.
@@ -30,7 +27,7 @@ impl Command for Outputs {
     const ID: &'static str = "yrcx.io.outputs";
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals> {
         let names = names::of_robot(context.robot, context.screen);
         let link = context.link;
         // Report the image that the wait received, so that even a very short change is reported.
@@ -50,7 +47,7 @@ impl Watchable for Outputs {
     const WATCH: &'static str = "yrcx.io.watch";
     const WATCHED: Watched = WATCHED;
 
-    async fn changed(&self, link: &mut Link) -> Result<(), Failure> {
+    async fn changed(&self, link: &mut Link) -> Result<()> {
         let last_reported = link.last_reported;
         link.last_received = Some(link.wait_for_image(|image| Some(*image) != last_reported).await?);
         Ok(())

@@ -1,9 +1,9 @@
 //! Observer of the client: records the traffic and prints notices.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 
 use crate::failure::failure;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use crate::refusal::refused;
 use crate::trace::Trace;
 use armctl_client::Watcher;

@@ -1,7 +1,3 @@
-use std::time::Duration;
-
-use serde_json::json;
-
 use crate::prelude::*;
 use crate::testing::{Bench, Reply, Scripted, run_on};
 use armctl_controller::yrcx::image::Words;
@@ -145,7 +141,7 @@ fn a_program_that_was_started_is_stopped_by_an_interrupt() {
 fn signals_are_switched_while_a_command_runs() {
     let mut bench = Bench::new(Scripted::new([ends(200, &[0x0200]), ends(0, &[0x0200])]));
     let begun = bench.run(&[MOVE, &["--no-wait"]].concat()).unwrap();
-    assert_eq!((&begun["reached"], &begun["elapsed_ms"]), (&serde_json::Value::Null, &serde_json::Value::Null));
+    assert_eq!((&begun["reached"], &begun["elapsed_ms"]), (&Value::Null, &Value::Null));
     let switched = bench.run(&["io", "set", "20=on"]).unwrap();
     let item = &switched["items"][0];
     assert_eq!((&item["name"], &item["old"], &item["new"]), (&json!("SI(20)"), &json!(false), &json!(true)));

@@ -3,9 +3,7 @@
 use super::{MotionReport, execute_motion};
 use crate::arguments::{Direction, UnitArgument};
 use crate::confirmed_write::confirmation;
-use crate::link::Yrcx;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_frame::wait_arguments::MotionEnd;
 
 /// Resets the absolute position of an axis of the mark type.
@@ -63,7 +61,7 @@ impl Command for AbsReset {
         confirmation(self.command())
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport> {
         let draft = context.link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
         let Some(direction) = self.direction else {
             if self.end.no_wait() {

@@ -89,7 +89,7 @@ impl Motion for Drive {
         self.destination.choose([Command::DrivePoint, Command::DriveMm, Command::DrivePulse])
     }
 
-    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+    fn fill(&self, draft: Draft) -> Result<Draft> {
         self.pace.apply_to(self.destination.apply_to(draft.with(Key::Axes, self.axis.as_str())))
     }
 
@@ -137,7 +137,7 @@ impl Motion for Drivei {
         }
     }
 
-    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+    fn fill(&self, draft: Draft) -> Result<Draft> {
         let Distance { point, by, by_pulse } = &self.distance;
         let draft = draft.with(Key::Axes, self.axis.as_str()).with_some(Key::Point, point.clone());
         self.pace.apply_to(draft.with_some(Key::Distance, by.clone().or(by_pulse.clone())))

@@ -34,7 +34,7 @@ impl Motion for Inch {
         }
     }
 
-    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+    fn fill(&self, draft: Draft) -> Result<Draft> {
         Ok(draft.with(Key::Axes, self.axis.as_str()).with(Key::Direction, self.direction.value()))
     }
 

@@ -1,14 +1,9 @@
 //! Command `yrcx jog` (4.2.6): moves an axis until it is stopped. armctl stops the axis at every end of the command.
 
-use std::time::Duration;
-
 use super::{Live, MotionReport};
 use crate::arguments::{Direction, EndOptions, System, UnitArgument};
-use crate::link::Yrcx;
 use crate::position::Unit;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
-use armctl_frame::settings::duration;
 
 /// Jogs an axis.
 #[derive(Debug, Args)]
@@ -53,6 +48,7 @@ impl Command for Jog {
     type Family = Yrcx;
     type Report = MotionReport;
     const ID: &'static str = "yrcx.jog";
+    const JOGS: bool = true;
 
     fn risk(&self) -> Risk {
         self.command().row().risk
@@ -70,11 +66,7 @@ impl Command for Jog {
         self.within.is_none()
     }
 
-    fn jogs(&self) -> bool {
-        true
-    }
-
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport> {
         let link = context.link;
         let unit = self.report.unwrap_or(self.system.unit());
         let draft = link.draft(self.command())?.with(Key::Axes, self.axis.as_str());

@@ -16,12 +16,9 @@ use std::sync::mpsc::{self, Sender};
 use std::thread::{self, JoinHandle};
 
 use super::arguments::{Axes, EndOptions, UnitArgument};
-use super::link::{CommandResult, Link};
+use super::link::CommandResult;
 use super::position::{Unit, group, position};
-use crate::link::Yrcx;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::motion::{self as robot, Target};
 use armctl_frame::robot::position::joint_table;
 
@@ -49,7 +46,7 @@ pub trait Motion: Args {
     fn command(&self) -> table::Command;
 
     /// Sets the fields from the arguments that the user typed.
-    fn fill(&self, draft: Draft) -> Result<Draft, Failure>;
+    fn fill(&self, draft: Draft) -> Result<Draft>;
 
     /// Describes the axis of a single-axis motion, for example `axis 3`.
     fn axis(&self) -> Option<String> {
@@ -129,7 +126,7 @@ impl<M: Motion> Command for Moving<M> {
         format!("{verb} {axis}{} {} ({})", self.which.name(), self.motion.target(), self.motion.axes_and_speed())
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<M::Report, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<M::Report> {
         let draft = context.link.draft(self.motion.command())?;
         let draft = EndOptions::apply_to(self.motion.fill(draft)?, self.unit());
         let order = staying(context.link, draft, &self.motion.stays()).await?;
@@ -148,7 +145,7 @@ impl<M: Motion> Command for Moving<M> {
 
 /// Adds the current position of `axes` to the command. Without these positions, a SCARA moves these axes to the target
 /// position although the user did not name them.
-async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order, Failure> {
+async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order> {
     let order = draft.clone().valid_order()?;
     if axes.is_empty() {
         return Ok(order);
@@ -184,7 +181,7 @@ async fn execute_motion(
     order: &Order,
     no_wait: bool,
     doing: &str,
-) -> Result<Option<CommandResult>, Failure> {
+) -> Result<Option<CommandResult>> {
     if no_wait {
         return link.begin(order).await;
     }

@@ -64,7 +64,7 @@ impl Motion for Move {
         }
     }
 
-    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+    fn fill(&self, draft: Draft) -> Result<Draft> {
         let draft = match (&self.point[..], self.circular) {
             ([], _) => self.axes.apply_numbers(draft, [&self.to, &self.to_pulse][usize::from(self.to.is_empty())])?,
             ([point], false) => self.axes.apply_to(draft).with(Key::Point, point.as_str()),

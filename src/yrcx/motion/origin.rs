@@ -1,12 +1,8 @@
 //! `yrcx origin` (4.2.12): return to origin, of robots or of one axis.
 
-use clap::ValueEnum;
-
 use super::{MotionReport, execute_motion};
 use crate::arguments::UnitArgument;
-use crate::link::Yrcx;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_frame::wait_arguments::MotionEnd;
 
 /// Returns robots or one axis to origin.
@@ -81,7 +77,7 @@ impl Command for Origin {
         format!("return {} to origin", self.describe())
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport> {
         let draft = context.link.draft(self.command())?;
         let draft = draft.with_some(Key::Axes, self.axis.clone());
         let order = draft.with_some(Key::OriginAxes, self.only.map(Kind::value)).valid_order()?;

@@ -30,7 +30,7 @@ impl Motion for Pallet {
         if self.arch.is_wanted() { Command::PalletArch } else { Command::PalletPtp }
     }
 
-    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+    fn fill(&self, draft: Draft) -> Result<Draft> {
         let draft = draft.with(Key::Pallet, self.pallet.as_str()).with(Key::WorkPosition, self.position.as_str());
         self.pace.apply_to(self.arch.apply_to(self.ramps.apply_to(draft, self.command())?))
     }

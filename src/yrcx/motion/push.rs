@@ -1,13 +1,10 @@
 //! `yrcx push` (4.2.23): move of one axis with limited force and time.
 
-use std::time::Duration;
-
 use super::drive::Destination;
 use super::{FromMotion, Motion, MotionReport};
 use crate::arguments::SpeedArguments;
 use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
-use armctl_frame::settings::duration;
 
 /// Pushes with one axis.
 #[derive(Debug, Args)]
@@ -46,7 +43,7 @@ impl Motion for Push {
         self.destination.choose([Command::PushPoint, Command::PushMm, Command::PushPulse])
     }
 
-    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+    fn fill(&self, draft: Draft) -> Result<Draft> {
         let draft = self.destination.apply_to(draft.with(Key::Axes, self.axis.as_str()));
         self.pace.apply_to(draft.with_some(Key::PushForce, self.force.clone()).with_some(Key::PushTime, self.time))
     }

@@ -1,12 +1,9 @@
 //! Confirmation of a motion. Before the question, armctl reads the current position and the target of each axis.
 
 use crate::confirmed_write::mm;
-use crate::link::Link;
 use crate::position::Unit;
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::table::Command;
-use armctl_frame::confirmation::Confirmer;
 use armctl_frame::gate::data_changed;
 
 /// Target of a motion.
@@ -22,7 +19,7 @@ struct MotionTarget {
 /// Asks the user to confirm a motion. `intent` describes the motion in one line. Before an interactive question, armctl
 /// reads the current position and the target point. After the user has answered, armctl reads the point again; if it
 /// has changed, the robot does not move.
-pub async fn confirm(link: &mut Link, confirmer: &Confirmer<'_>, order: &Order, intent: String) -> Result<(), Failure> {
+pub async fn confirm(link: &mut Link, confirmer: &Confirmer<'_>, order: &Order, intent: String) -> Result<()> {
     let change = Change::new(intent);
     if !confirmer.asks_user() {
         return confirmer.confirm(&change).await;
@@ -42,7 +39,7 @@ pub async fn confirm(link: &mut Link, confirmer: &Confirmer<'_>, order: &Order, 
 }
 
 /// Reads the current position; `None` if the controller refuses to report it.
-async fn present(link: &mut Link, unit: Unit) -> Result<Option<[i32; 4]>, Failure> {
+async fn present(link: &mut Link, unit: Unit) -> Result<Option<[i32; 4]>> {
     let command = match unit {
         Unit::Mm => Command::PositionMm,
         Unit::Pulse => Command::PositionPulse,
@@ -65,7 +62,7 @@ fn is_axis_moved(order: &Order) -> impl Fn(usize) -> bool + use<> {
 
 /// Returns the target of a command, if the target is numeric. A distance stays a distance until the start position is
 /// known. A pallet position has no numeric target: the intent describes it.
-async fn goal(link: &mut Link, order: &Order) -> Result<Option<MotionTarget>, Failure> {
+async fn goal(link: &mut Link, order: &Order) -> Result<Option<MotionTarget>> {
     let values = order.values();
     let is_meant = is_axis_moved(order);
     let by_distance = is_distance(order.command());
@@ -114,7 +111,7 @@ const fn is_distance(command: Command) -> bool {
 }
 
 /// Reads values; `None` if the controller refuses.
-async fn read(link: &mut Link, command: Command, with: &[(Key, i32)]) -> Result<Option<Values>, Failure> {
+async fn read(link: &mut Link, command: Command, with: &[(Key, i32)]) -> Result<Option<Values>> {
     let draft = with.iter().fold(link.draft(command)?, |draft, (key, value)| draft.with(*key, *value));
     Ok(link.try_ask(&draft.valid_order()?).await?.ok().map(|done| done.values))
 }

@@ -64,7 +64,7 @@ impl Motion for Movei {
         }
     }
 
-    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+    fn fill(&self, draft: Draft) -> Result<Draft> {
         let draft = match &self.point {
             Some(point) => self.axes.apply_to(draft).with(Key::Point, point.as_str()),
             None => self.axes.apply_numbers(draft, if self.by.is_empty() { &self.by_pulse } else { &self.by })?,

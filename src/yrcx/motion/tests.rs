@@ -1,12 +1,8 @@
-use std::time::Duration;
-
-use serde_json::{Value, json};
-
+use crate::prelude::basics::*;
 use crate::testing::{
     Bench, Reply, Scripted, answer, entries, example, frames, intent, run_on, undefined, words, written,
 };
 use armctl_controller::yrcx::image::Words;
-use armctl_frame::failure::Kind;
 
 /// A command line for each worked example of 4.2. Misprints of the manual are corrected, as in the data file.
 pub(crate) const EXAMPLES: &[(&str, &str)] = &[

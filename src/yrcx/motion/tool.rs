@@ -30,7 +30,7 @@ impl Motion for Movet {
         if self.linear { Command::MovetLinear } else { Command::MovetPtp }
     }
 
-    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+    fn fill(&self, draft: Draft) -> Result<Draft> {
         let draft = self.axes.apply_to(draft).with(Key::Point, self.point.as_str());
         let draft = if self.linear { self.pace.apply_linear(draft) } else { self.pace.apply_to(draft)? };
         self.ramps.apply_to(draft, self.command())

@@ -1,14 +1,10 @@
 //! Requests to PROFIBUS stations. They do not lock a station.
 
-use std::time::Duration;
-
 use super::{check, connect};
 use crate::fieldbus::{BusBoard, Checked, ConnectionParameters};
-use crate::link_error::not_open;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_controller::text::hex;
 use armctl_controller::yrcx::image::COMMAND_WORDS;
-use armctl_frame::face::layers::Layers;
 use armctl_frame::settings::target::Bus;
 use armctl_frame::settings::target::profibus::{Profibus, SCHEME};
 use armctl_transport::image::tap::Tap;
@@ -23,7 +19,8 @@ use armctl_transport::profibus::wire::{Configuration, Diagnosis, Flag, MAX_STATI
 /// PROFIBUS line of a URL. Each request opens the port.
 #[derive(Debug)]
 pub struct Board {
-    profibus: Profibus,
+    /// Options of the URL.
+    pub profibus: Profibus,
     label: String,
     timeout: Duration,
     tap: Tap,
@@ -40,31 +37,26 @@ impl Board {
     }
 
     /// Creates the client for a line without a robot.
-    pub fn of_line(bus: &Bus, line: &str, tap: Tap) -> Result<Self, Failure> {
+    pub fn of_line(bus: &Bus, line: &str, tap: Tap) -> Result<Self> {
         let profibus: &Profibus =
             bus.options().ok_or_else(|| Failure::local(format!("{bus:?} is not a URL of PROFIBUS")))?;
         Ok(Self { profibus: profibus.clone(), label: line.to_owned(), timeout: Duration::ZERO, tap })
     }
 
-    /// Options of the URL.
-    pub const fn settings(&self) -> &Profibus {
-        &self.profibus
-    }
-
     /// Finds all stations.
-    pub async fn scan(&self) -> Result<Vec<Station>, Failure> {
+    pub async fn scan(&self) -> Result<Vec<Station>> {
         let all = (0..=MAX_STATION).filter(|station| *station != self.profibus.master).collect();
         let found = self.ask(all, RETRIES).await?;
         Ok(found.iter().map(Station::from).collect())
     }
 
     /// Reads the station of the URL and its image; `None` if the station does not answer.
-    pub async fn station(&self) -> Result<Option<(Station, Option<Image>)>, Failure> {
+    pub async fn station(&self) -> Result<Option<(Station, Option<Image>)>> {
         Ok(self.found().await?.map(|found| (Station::from(&found), self.image(&found))))
     }
 
     /// Listens to the data exchange between the station and another master. armctl sends nothing.
-    pub async fn overheard(&self) -> Result<Option<Image>, Failure> {
+    pub async fn overheard(&self) -> Result<Option<Image>> {
         let failed = |error: &LinkError| not_open(&self.label, &SCHEME, error);
         let listening = connect::listen(&self.profibus, self.tap.clone(), self.timeout).await;
         let mut link = listening.map_err(|error| failed(&error))?;
@@ -76,7 +68,7 @@ impl Board {
     }
 
     /// Reads the diagnosis of the URL's station.
-    pub async fn diagnosis(&self) -> Result<Diagnosis, Failure> {
+    pub async fn diagnosis(&self) -> Result<Diagnosis> {
         let found = self.found().await?.ok_or_else(|| self.silent())?;
         found.diagnosis.map_err(|why| match why {
             NoValueReason::NoAnswer => self.silent(),
@@ -99,7 +91,7 @@ impl Board {
         format!("{}: station {}", self.label, self.profibus.station)
     }
 
-    async fn found(&self) -> Result<Option<StationResult>, Failure> {
+    async fn found(&self) -> Result<Option<StationResult>> {
         let retries = self.profibus.retries.unwrap_or(3);
         Ok(self.ask(vec![self.profibus.station], retries).await?.into_iter().next())
     }
@@ -115,7 +107,7 @@ impl Board {
         Image::from_link(&bytes)
     }
 
-    async fn ask(&self, stations: Vec<u8>, retries: u8) -> Result<Vec<StationResult>, Failure> {
+    async fn ask(&self, stations: Vec<u8>, retries: u8) -> Result<Vec<StationResult>> {
         let asked = self.survey(stations, retries).await;
         asked.map_err(|error| not_open(&self.label, &SCHEME, &error))
     }

@@ -3,8 +3,7 @@
 
 use super::board::Board;
 use crate::fieldbus::{Checked, InLayer as _};
-use crate::prelude::*;
-use armctl_frame::face::layers::Layers;
+use crate::prelude::basics::*;
 use armctl_transport::profibus::port::latency_timer;
 
 /// Layers in the order of the check.
@@ -12,7 +11,7 @@ pub(super) const LAYERS: &[&str] = &["name", "station", "ident", "configuration"
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
 pub(super) async fn check_layers(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
-    let settings = board.settings().clone();
+    let settings = board.profibus.clone();
     if !settings.is_owner {
         return overheard(board, layers).await;
     }
@@ -95,7 +94,7 @@ pub(super) async fn check_layers(board: &mut Board, layers: &mut Layers) -> Chec
 
 /// With role=listen, armctl sends nothing, so this check only listens.
 async fn overheard(board: &Board, layers: &mut Layers) -> Checked<Option<Image>> {
-    let opens = format!("{} opens; armctl sends nothing, because of role=listen", board.settings().port);
+    let opens = format!("{} opens; armctl sends nothing, because of role=listen", board.profibus.port);
     let heard = board.overheard().await;
     if let Err(failure) = &heard
         && failure.kind != Kind::NoAnswer

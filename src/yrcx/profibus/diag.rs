@@ -24,10 +24,10 @@ impl BoardReport for DiagnosisReport {
     const ID: &'static str = "yrcx.profibus.diag";
     const MESSAGES: &'static str = "telegrams that read state, diagnosis and configuration of the station";
 
-    async fn read(board: &mut Board) -> Result<Self, Failure> {
+    async fn read(board: &mut Board) -> Result<Self> {
         let diagnosis = board.diagnosis().await?;
         Ok(Self {
-            station: board.settings().station,
+            station: board.profibus.station,
             ident: format!("{:#06x}", diagnosis.ident),
             master: diagnosis.master,
             states: diagnosis.flag_texts().collect(),

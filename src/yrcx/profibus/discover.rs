@@ -1,13 +1,8 @@
 //! Discovery of PROFIBUS stations on a line.
 
-use std::time::Duration;
-
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-
 use super::board::{Board, Station};
 use crate::fieldbus::{self, Device, Scope, bus_of, fields};
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::settings::target::profibus::SCHEME;
 use armctl_transport::image::tap::Tap;
 
@@ -32,7 +27,7 @@ impl fieldbus::Search for Search {
         if self.profibus.is_some() { Scope::Devices } else { Scope::Nothing }
     }
 
-    fn search(&self, _wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>> {
+    fn search(&self, _wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>>> {
         async move {
             let Some(line) = &self.profibus else { return Ok(Vec::new()) };
             let url = |station: u8| {
@@ -47,7 +42,7 @@ impl fieldbus::Search for Search {
     }
 }
 
-fn found(station: &Station, line: &str, target: String) -> Result<Device, Failure> {
+fn found(station: &Station, line: &str, target: String) -> Result<Device> {
     let ident = station.ident.as_deref().unwrap_or("-");
     let device = format!("{}, ident {ident}, {}", station.kind, station.diagnosis);
     Ok(Device {

@@ -16,7 +16,7 @@ impl BoardReport for ProbeReport {
     const ID: &'static str = "yrcx.profibus.probe";
     const MESSAGES: &'static str = "telegrams that read state, diagnosis and configuration of the station";
 
-    async fn read(board: &mut Board) -> Result<Self, Failure> {
+    async fn read(board: &mut Board) -> Result<Self> {
         let (station, _) = board.station().await?.ok_or_else(|| board.silent())?;
         Ok(Self { station })
     }

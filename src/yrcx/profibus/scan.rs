@@ -17,7 +17,7 @@ impl BoardReport for Stations {
     const MESSAGES: &'static str =
         "telegrams that read the state of every station, and diagnosis and configuration of slaves";
 
-    async fn read(board: &mut Board) -> Result<Self, Failure> {
+    async fn read(board: &mut Board) -> Result<Self> {
         Ok(Self { stations: board.scan().await? })
     }
 }

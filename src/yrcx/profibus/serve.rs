@@ -2,7 +2,7 @@
 
 use super::simulated::{self, FAULTS, Options, Server};
 use crate::fieldbus::{Operator, RunningSimulation, Serve, ServeOptions};
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use crate::simulated::{faults, faults_of_option};
 use armctl_frame::serve::terminal_link::TerminalLink;
 use armctl_transport::profibus::rates::{RATES, Rate};
@@ -36,7 +36,7 @@ impl Serve for ServeArgs {
         true
     }
 
-    fn serve(&self, ServeOptions { start, link, faults, .. }: ServeOptions<'_>) -> Result<RunningSimulation, Failure> {
+    fn serve(&self, ServeOptions { start, link, faults, .. }: ServeOptions<'_>) -> Result<RunningSimulation> {
         let options = Options {
             station: self.station,
             ident: self.ident,

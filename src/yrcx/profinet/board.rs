@@ -1,13 +1,10 @@
 //! Requests to a PROFINET station that need no connection.
 
 use std::net::Ipv4Addr;
-use std::time::Duration;
 
 use super::{check, connect};
 use crate::fieldbus::{BusBoard, Checked, ConnectionParameters};
-use crate::link_error::not_open;
-use crate::prelude::*;
-use armctl_frame::face::layers::Layers;
+use crate::prelude::basics::*;
 use armctl_frame::settings::target::profinet::{Profinet, SCHEME};
 use armctl_transport::image::LinkError;
 use armctl_transport::image::tap::Tap;
@@ -21,7 +18,8 @@ use armctl_transport::profinet::wire::dcp::{self, Block};
 /// Station of a URL. Each request opens the interface.
 #[derive(Debug)]
 pub struct Board {
-    profinet: Profinet,
+    /// Options of the URL.
+    pub profinet: Profinet,
     label: String,
     tap: Tap,
 }
@@ -32,13 +30,8 @@ impl Board {
         Ok(Self { profinet: at.options::<Profinet>()?.clone(), label: at.robot.label(), tap: at.tap.clone() })
     }
 
-    /// Options of the URL.
-    pub const fn settings(&self) -> &Profinet {
-        &self.profinet
-    }
-
     /// Returns the interface, with the recorder of packets.
-    pub fn interface(&self) -> Result<Interface, Failure> {
+    pub fn interface(&self) -> Result<Interface> {
         let mut interface = Interface::find(&self.profinet.interface).map_err(|error| self.failure(error))?;
         interface.tap = self.tap.clone();
         Ok(interface)
@@ -48,7 +41,7 @@ impl Board {
     pub async fn ask<T: Send + 'static>(
         &self,
         question: impl FnOnce(&Interface) -> Result<T, ProfinetError> + Send + 'static,
-    ) -> Result<T, Failure> {
+    ) -> Result<T> {
         let interface = self.interface()?;
         match tokio::task::spawn_blocking(move || question(&interface)).await {
             Ok(answer) => answer.map_err(|error| self.failure(error)),
@@ -57,25 +50,25 @@ impl Board {
     }
 
     /// Finds the station.
-    pub async fn station(&self) -> Result<StationInfo, Failure> {
+    pub async fn station(&self) -> Result<StationInfo> {
         let station = self.profinet.station.clone();
         self.ask(move |interface| commission::find(interface, &station)).await
     }
 
     /// Reads the records of the station.
-    pub async fn identity(&self, found: StationInfo) -> Result<Identity, Failure> {
+    pub async fn identity(&self, found: StationInfo) -> Result<Identity> {
         self.ask(move |interface| commission::identity(interface, &found)).await
     }
 
     /// Finds another station with this name.
-    pub async fn namesake(&self, name: &str, than: &StationInfo) -> Result<Option<String>, Failure> {
+    pub async fn namesake(&self, name: &str, than: &StationInfo) -> Result<Option<String>> {
         let (station, mac) = (Station::Name(name.to_owned()), than.mac);
         let other = self.ask(move |interface| commission::find_duplicate(interface, &station, mac)).await?;
         Ok(other.map(|mac| format!("station {mac}")))
     }
 
     /// Finds another device that has this IP address.
-    pub async fn holder(&self, address: Ipv4Addr, than: &StationInfo) -> Result<Option<String>, Failure> {
+    pub async fn holder(&self, address: Ipv4Addr, than: &StationInfo) -> Result<Option<String>> {
         let (mac, own) = (than.mac, self.interface()?.mac);
         let other = self.ask(move |interface| commission::holder(interface, address, mac)).await?;
         Ok(other.map(|mac| if mac == own { "this machine".to_owned() } else { format!("the card {mac}") }))
@@ -88,7 +81,7 @@ impl Board {
         what: &'static str,
         block: Block,
         is_so: impl Fn(&dcp::Station) -> bool + Send + 'static,
-    ) -> Result<StationInfo, Failure> {
+    ) -> Result<StationInfo> {
         let mac = found.mac;
         let set = self.ask(move |interface| {
             let answer = commission::change(interface, mac, what, &block);
@@ -116,7 +109,7 @@ impl Board {
     }
 
     /// Opens a connection with this layout until data flows, then closes it. Returns the answer of the station.
-    pub async fn attempt(&self, layout: &Layout) -> Result<Result<(), ProfinetError>, Failure> {
+    pub async fn attempt(&self, layout: &Layout) -> Result<Result<(), ProfinetError>> {
         let profinet = Profinet { layout: Some(layout.clone()), gsdml: None, ..self.profinet.clone() };
         let settings = connect::settings(&profinet, Duration::ZERO).map_err(|error| self.failure_of(&error))?;
         Ok(connect::attempt(&profinet, settings, self.tap.clone()).await)

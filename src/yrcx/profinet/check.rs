@@ -1,13 +1,10 @@
 //! Layers of `armctl robots check` for a PROFINET device: from the interface to the image of the controller. The check
 //! opens a connection only to a simulator, because a real controller stops the robot when a connection ends.
 
-use std::time::Duration;
-
 use super::board::Board;
 use super::connect;
 use crate::fieldbus::{Checked, InLayer as _};
-use crate::prelude::*;
-use armctl_frame::face::layers::Layers;
+use crate::prelude::basics::*;
 use armctl_transport::image::{Event, ImageLink};
 use armctl_transport::profinet::commission::StationInfo;
 use armctl_transport::profinet::error::{ModuleMismatch, ProfinetError};
@@ -22,7 +19,7 @@ pub(super) const LAYERS: &[&str] = &["name", "interface", "privilege", "station"
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
 pub(super) async fn check_layers(board: &Board, layers: &mut Layers) -> Checked<Option<Image>> {
-    let profinet = board.settings().clone();
+    let profinet = board.profinet.clone();
     layers.ok("name", format!("{} through {}", profinet.station, profinet.interface));
     let interface = board.interface().in_layer("interface")?;
     let usable = interface.check().and_then(|()| interface.address());
@@ -83,7 +80,7 @@ async fn records(board: &Board, found: &StationInfo, layers: &mut Layers) -> Che
         }
         Err(error) => return Err(("RPC", board.failure(error))),
     }
-    let settings = match connect::settings(board.settings(), Duration::ZERO) {
+    let settings = match connect::settings(&board.profinet, Duration::ZERO) {
         Ok(settings) => Some(settings),
         Err(error) => {
             let advice = error.cause().advice.clone().unwrap_or_default();
@@ -161,8 +158,8 @@ fn left_out(layout: &Layout, real: &[RealModule]) -> Option<String> {
 }
 
 /// Connects to a simulator and reads the first image.
-async fn data(board: &Board, network: &Network, layers: &mut Layers) -> Result<Option<Image>, Failure> {
-    let settings = connect::settings(board.settings(), Duration::ZERO);
+async fn data(board: &Board, network: &Network, layers: &mut Layers) -> Result<Option<Image>> {
+    let settings = connect::settings(&board.profinet, Duration::ZERO);
     let Ok(settings) = settings else { return Ok(None) };
     let link = network.open(settings).map_err(|error| board.failure(error))?;
     let mut link = ImageLink::in_process(Box::new(link));

@@ -1,14 +1,8 @@
 //! Discovery of PROFINET stations on an interface.
 
-use std::time::Duration;
-
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-
 use super::station::Station;
 use crate::fieldbus::{self, Device, Scope, fields};
-use crate::link_error::not_open;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_frame::settings::target::profinet::SCHEME;
 use armctl_transport::image::LinkError;
 use armctl_transport::image::tap::Tap;
@@ -29,7 +23,7 @@ impl fieldbus::Search for Search {
         if self.interfaces.is_empty() { Scope::Nothing } else { Scope::Network }
     }
 
-    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>> {
+    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>>> {
         async move {
             let mut all = Vec::new();
             for name in &self.interfaces {
@@ -51,7 +45,7 @@ impl fieldbus::Search for Search {
     }
 }
 
-fn found_station(station: &Station, interface: &str) -> Result<Device, Failure> {
+fn found_station(station: &Station, interface: &str) -> Result<Device> {
     // A name that two stations have does not identify a station, so use the MAC address.
     let is_twice = station.remarks.iter().any(|remark| remark.ends_with("has the same name"));
     let place = if station.station.is_empty() || is_twice { &station.mac } else { &station.station };

@@ -1,9 +1,6 @@
 //! `yrcx profinet gsdml`.
 
-use std::path::PathBuf;
-
 use crate::prelude::*;
-use armctl_files as files;
 use armctl_frame::OfflineCommand;
 use armctl_transport::profinet::gsdml::{self, Gsdml, Head, SlottedModule};
 use armctl_transport::profinet::layout::Direction;
@@ -25,7 +22,7 @@ impl OfflineCommand for ReadFile {
     type Report = DeviceDescription;
     const ID: &'static str = "yrcx.profinet.gsdml";
 
-    fn run(&self, _screen: &Screen) -> Result<DeviceDescription, Failure> {
+    fn run(&self, _screen: &Screen) -> Result<DeviceDescription> {
         let shown = self.file.display();
         let bytes = files::read(&self.file, gsdml::MAX_FILE_SIZE).map_err(|error| Failure::io(&shown, &error))?;
         let read = Gsdml::parse(&bytes).map_err(|error| {

@@ -3,7 +3,6 @@
 use super::board::Board;
 use super::plan_search;
 use super::station::Station;
-use crate::link::Yrcx;
 use crate::prelude::*;
 
 /// Reads the identity of the station (DCP Identify). The station needs no IP address, and armctl opens no connection.
@@ -18,7 +17,7 @@ impl Command for Identify {
     const ID: &'static str = "yrcx.profinet.identify";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<IdentityReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<IdentityReport> {
         context.link.reject_unit_of::<Board>()?;
         plan_search(context.link, context.robot)?;
         let found = context.link.board::<Board>()?.station().await?;

@@ -15,10 +15,7 @@ mod set;
 pub mod simulated;
 mod station;
 
-use serde_json::json;
-
 use super::connect::{Endpoint, endpoint};
-use super::link::Link;
 use crate::prelude::*;
 use armctl_controller::text;
 use armctl_frame::Offline;
@@ -29,7 +26,7 @@ use armctl_transport::profinet::wire::Mac;
 use armctl_transport::profinet::wire::dcp::Block;
 
 /// Returns the station that a robot's URL names.
-fn station_of(robot: &Robot) -> Result<Station, Failure> {
+fn station_of(robot: &Robot) -> Result<Station> {
     let other = || {
         Failure::usage(format!("{} is not on {}", robot.label(), SCHEME.bus))
             .hint("select a station: -t profinet://NAME@INTERFACE")
@@ -44,7 +41,7 @@ fn station_of(robot: &Robot) -> Result<Station, Failure> {
 }
 
 /// In a dry run, notes the DCP request for the station.
-fn plan_search(link: &mut Link, robot: &Robot) -> Result<(), Failure> {
+fn plan_search(link: &mut Link, robot: &Robot) -> Result<()> {
     let question = commission::search_filter(&station_of(robot)?, 0);
     let hex = text::hex(&commission::identify(Mac::default(), &question));
     link.plan_frame(json!({ "hex": unknown(&hex, true), "about": "DCP Identify: MAC address of the station" }))

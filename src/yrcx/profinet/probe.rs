@@ -1,14 +1,11 @@
 //! `yrcx profinet probe`.
 
 use std::collections::VecDeque;
-use std::time::Duration;
 
 use super::board::Board;
 use super::station::Station;
 use super::{connect, plan_search};
-use crate::link::Yrcx;
 use crate::prelude::*;
-use armctl_frame::output::csv::RowsOf;
 use armctl_transport::profinet::candidate_layouts;
 use armctl_transport::profinet::commission::Identity;
 use armctl_transport::profinet::error::ProfinetError;
@@ -42,7 +39,7 @@ impl Command for Probe {
         if self.tries { Risk::Motion } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport> {
         let Context { robot, link, .. } = context;
         link.reject_unit_of::<Board>()?;
         link.then("calls that read I&M0 and the modules (ReadImplicit of 0xAFF0 and 0xF000)");
@@ -67,7 +64,7 @@ impl Command for Probe {
 fn possible(board: &Board, identity: &Identity) -> Vec<Layout> {
     let bytes = u16::try_from(Image::BYTES).unwrap_or(u16::MAX);
     // An error is ignored, because this command is also for targets without a layout.
-    let told = connect::settings(board.settings(), Duration::ZERO).ok().map(|settings| settings.layout);
+    let told = connect::settings(&board.profinet, Duration::ZERO).ok().map(|settings| settings.layout);
     let guessed = match &identity.modules {
         Ok(real) => candidate_layouts::layouts(real, bytes),
         // Start with any layout: the answer of the device lists its real modules.
@@ -85,7 +82,7 @@ fn possible(board: &Board, identity: &Identity) -> Vec<Layout> {
 /// Maximum number of connection attempts.
 const MAX_ATTEMPTS: usize = 10;
 
-async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attempt>, Failure> {
+async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attempt>> {
     let mut tried: Vec<(Layout, Attempt)> = Vec::new();
     while let Some(layout) = left.pop_front().filter(|_| tried.len() < MAX_ATTEMPTS) {
         if tried.iter().any(|(other, _)| *other == layout) {

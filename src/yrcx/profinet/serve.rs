@@ -2,8 +2,7 @@
 
 use super::simulated::{Controller, NAME, controller, layout, setup};
 use crate::fieldbus::{Operator, RunningSimulation, Serve, ServeOptions};
-use crate::link_error::not_open;
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use crate::simulated::{faults, faults_of_option};
 use armctl_frame::settings::target::profinet::{self, SCHEME};
 use armctl_transport::fault::{FaultNames, FaultSpec, SimulatorFaults};
@@ -33,7 +32,7 @@ pub struct ServeArgs {
 const DEVICE_FAULTS: FaultNames<Fault> = FaultNames { link: &[], device: &Fault::ALL };
 
 impl Serve for ServeArgs {
-    fn serve(&self, ServeOptions { start, faults, .. }: ServeOptions<'_>) -> Result<RunningSimulation, Failure> {
+    fn serve(&self, ServeOptions { start, faults, .. }: ServeOptions<'_>) -> Result<RunningSimulation> {
         let Some(interface) = &self.interface else {
             return Err(Failure::usage("a PROFINET device needs an Ethernet interface")
                 .hint("add --interface IFACE; use `ip link` to list the interfaces"));

@@ -2,11 +2,8 @@
 
 use std::net::Ipv4Addr;
 
-use serde_json::json;
-
 use super::board::Board;
 use super::{frame_for, plan_search, station_of};
-use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_frame::settings::target::profinet;
 use armctl_transport::profinet::commission::StationInfo;
@@ -83,8 +80,8 @@ struct Task<C: Fn(&StationInfo) -> Change> {
 async fn set<C: Fn(&StationInfo) -> Change>(
     context: Context<'_, Yrcx>,
     task: Task<C>,
-    check: impl AsyncFnOnce(&Board, &StationInfo) -> Result<(), Failure>,
-) -> Result<StationInfo, Failure> {
+    check: impl AsyncFnOnce(&Board, &StationInfo) -> Result<()>,
+) -> Result<StationInfo> {
     let Context { robot, link, confirmer, .. } = context;
     link.reject_unit_of::<Board>()?;
     plan_search(link, robot).known()?;
@@ -118,7 +115,7 @@ impl Command for Blink {
     const INTENT: &'static str = "make the light of the station blink";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport> {
         let task = Task {
             id: Self::ID,
             risk: self.risk(),
@@ -148,7 +145,7 @@ impl Command for SetName {
         format!("set the station name to '{}'{}", self.name, persistence_text(self.temporary))
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport> {
         let change = |found: &StationInfo| {
             let old = &found.station.name;
             let change = Change::new(format!("overwrite the name of station {}", found.mac));
@@ -189,7 +186,7 @@ impl Command for SetIp {
         format!("set the station address to {}{}", self.address.address, persistence_text(self.temporary))
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport> {
         let address = self.address.address;
         let suite = IpSuite { gateway: self.gateway.unwrap_or(self.address.gateway), ..self.address };
         let change = |found: &StationInfo| match found.station.address() {
@@ -239,7 +236,7 @@ impl Command for Reset {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport> {
         let change = |found: &StationInfo| {
             let (name, address) = (&found.station.name, found.station.address());
             let mut change = Change::new(format!("delete the settings of station {}", found.mac));

@@ -1,6 +1,6 @@
 //! Report of a PROFINET station.
 
-use crate::prelude::*;
+use crate::prelude::basics::*;
 use armctl_transport::profinet::commission::StationInfo;
 use armctl_transport::profinet::wire::dcp;
 

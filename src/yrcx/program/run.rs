@@ -1,21 +1,14 @@
 //! `yrcx program run` (4.6.2): starts a program and optionally waits for its end.
 
-use std::time::Duration;
-
 use tokio::time::{Instant, timeout};
 
 use super::WhichOrAll;
 use crate::alarm;
 use crate::info::Part;
-use crate::link::{Link, Yrcx};
 use crate::prelude::*;
-use crate::refusal::BuildOrder as _;
-use armctl_frame::dry_run::unknown;
 use armctl_frame::repeated_runs::{Cycle, Repeat, Runs};
 use armctl_frame::robot::alarm::{AlarmEntry, hint_after};
 use armctl_frame::robot::program::{Program, ProgramState};
-use armctl_frame::settings::duration;
-use armctl_frame::settings::target::Family;
 use armctl_frame::wait_arguments::ProgramEnd;
 
 /// Runs a program, or all registered programs. The controller answers when it has accepted the start.
@@ -51,7 +44,7 @@ impl Command for Run {
         format!("run {}{}", self.which.describe(), self.repeat.describe())
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<RunReport, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<RunReport> {
         let Context { link, screen, .. } = context;
         let order = self.which.apply_to(link.draft(table::Command::ProgramRun)?).valid_order()?;
         let what = self.which.describe();
@@ -119,7 +112,7 @@ fn never_observed(what: &str) -> Failure {
 }
 
 /// Waits until no program runs. Returns whether a program was seen running.
-async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duration>) -> Result<bool, Failure> {
+async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duration>) -> Result<bool> {
     let lost = |failure: Failure| {
         let message = format!("{what} was started, but armctl could not read the result: {}", failure.message);
         Failure { kind: Kind::OutcomeUnknown, message, ..failure }.hint(
@@ -149,7 +142,7 @@ async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duratio
 /// Fails if an emergency stop or an alarm ended the program. An error in a program stops the program, but does not
 /// switch SO(03) on. Then only the alarm history shows that the program did not reach its end; `before` is its latest
 /// entry before the start.
-async fn alarmed(link: &mut Link, what: &str, before: Option<&AlarmEntry<Part>>) -> Result<(), Failure> {
+async fn alarmed(link: &mut Link, what: &str, before: Option<&AlarmEntry<Part>>) -> Result<()> {
     let image = link.look().await?;
     let latest = alarm::latest(link).await?;
     let is_new = latest.as_ref().is_some_and(|latest| before != Some(latest));

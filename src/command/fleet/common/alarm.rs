@@ -1,7 +1,5 @@
 //! `armctl alarm list|history|watch|reset` for robots of any family.
 
-use std::time::Duration;
-
 use clap::Subcommand;
 
 use super::SharedVerbCommands;
@@ -11,7 +9,7 @@ use armctl_frame::face::shared_commands::SharedVerb;
 use armctl_frame::output::envelope::Envelope;
 use armctl_frame::prelude::*;
 use armctl_frame::robot::alarm::AllAlarms;
-use armctl_frame::settings::{alarms, duration};
+use armctl_frame::settings::alarms;
 use armctl_frame::watch::Changes;
 use armctl_frame::{AnyCommand, SchemaEntry};
 
@@ -47,7 +45,7 @@ impl Alarm {
     ///
     /// # Errors
     /// If a family does not have this verb, which a test excludes.
-    pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
+    pub fn command(&self) -> Result<Box<dyn AnyCommand>> {
         Ok(match self {
             Self::List(_) => Box::new(List {}),
             Self::History => Box::new(SharedVerbCommands::new("alarm.history", SharedVerb::AlarmHistory)),
@@ -82,11 +80,11 @@ impl Command for List {
     const ID: &'static str = "alarm.list";
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
-    async fn run(&self, context: Context<'_, Fleet>) -> Result<ActiveAlarms, Failure> {
+    async fn run(&self, context: Context<'_, Fleet>) -> Result<ActiveAlarms> {
         let Context { robot, link, screen, several, .. } = context;
         link.open_link(screen).await?;
         let found = match link {
-            Link::Open(face, connection) => face.alarms(&mut **connection).await?,
+            Link::Open(face, connection) => (face.alarms)(&mut **connection).await?,
             Link::Absent(absent) => return Err(absent.failure.clone()),
         };
         let mut alarms = Vec::with_capacity(found.len());

@@ -1,13 +1,10 @@
 //! `armctl io get|list|watch` for robots of any family.
 
-use std::time::Duration;
-
-use clap::{Args, Subcommand};
+use clap::Subcommand;
 
 use super::line::SharedLine;
-use armctl_frame::failure::Failure;
+use armctl_frame::prelude::*;
 use armctl_frame::robot::io::{Filter, IoValue, Signals};
-use armctl_frame::settings::duration;
 use armctl_frame::watch::Changes;
 use armctl_frame::{AnyCommand, SchemaEntry};
 
@@ -51,7 +48,7 @@ pub struct Watch {
 
 impl Io {
     /// Command for robots of any family.
-    pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
+    pub fn command(&self) -> Result<Box<dyn AnyCommand>> {
         let (id, verb, words) = match self {
             Self::Get(Get { signals }) => ("io.get", "get", signals.clone()),
             Self::Watch(Watch { signals, .. }) => ("io.watch", "watch", signals.clone()),

@@ -6,25 +6,19 @@ use std::collections::HashMap;
 use std::rc::Rc;
 use std::slice;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-use serde_json::Value;
-
-use super::PerRobot;
+use super::PER_ROBOT;
 use crate::command::families;
 use armctl_frame::command::AnyContext;
 use armctl_frame::face::family_command::{FamilyLine, ParsedCommand};
 use armctl_frame::gate::Intent;
 use armctl_frame::items::ItemError;
-use armctl_frame::names;
 use armctl_frame::output::csv::Sheet;
 use armctl_frame::prelude::*;
 use armctl_frame::report::sheet_of;
-use armctl_frame::settings::target::Family;
 use armctl_frame::{AnyCommand, AnyReport, Driver, Outcome};
 
 /// A parsed command, or the error.
-type Parsed = Result<Box<dyn AnyCommand>, Failure>;
+type Parsed = Result<Box<dyn AnyCommand>>;
 
 /// A read command that all families have. Of several commands, each family uses the first command that it has.
 pub struct SharedLine {
@@ -40,17 +34,17 @@ pub struct SharedLine {
 
 impl SharedLine {
     /// Parses a line; `id` is its command id in envelopes and schemas.
-    pub fn new(id: &'static str, words: Vec<String>) -> Result<Self, Failure> {
+    pub fn new(id: &'static str, words: Vec<String>) -> Result<Self> {
         Self::parse_first_family(id, vec![words], false)
     }
 
     /// Reads a value of any kind by its name or label: `NOUN get NAME` with the first noun that has the name.
-    pub fn reading(id: &'static str, nouns: &[&str], name: &str) -> Result<Self, Failure> {
+    pub fn reading(id: &'static str, nouns: &[&str], name: &str) -> Result<Self> {
         let lines = nouns.iter().map(|noun| [*noun, "get", name].map(ToOwned::to_owned).into());
         Self::parse_first_family(id, lines.collect(), true)
     }
 
-    fn parse_first_family(id: &'static str, lines: Vec<Vec<String>>, is_reduced: bool) -> Result<Self, Failure> {
+    fn parse_first_family(id: &'static str, lines: Vec<Vec<String>>, is_reduced: bool) -> Result<Self> {
         let default_line: Vec<(Family, Parsed)> = Family::ALL
             .into_iter()
             .map(|family| (family, names::detect_names(|| parse_first(family, &lines)).0))
@@ -88,8 +82,8 @@ impl AnyCommand for SharedLine {
         self.default_arguments(None).is_some_and(AnyCommand::is_endless)
     }
 
-    fn driver(&self) -> Option<&'static dyn Driver> {
-        Some(&PerRobot)
+    fn driver(&self) -> Option<&'static Driver> {
+        Some(&PER_ROBOT)
     }
 
     fn connect_mode(&self, robot: &Robot) -> ConnectMode {
@@ -148,7 +142,7 @@ struct ReadItem {
 }
 
 impl Reading {
-    fn new(report: &dyn AnyReport) -> Result<Self, Failure> {
+    fn new(report: &dyn AnyReport) -> Result<Self> {
         let data = report.data()?;
         let text = |value: &Value| value.as_str().map(ToOwned::to_owned);
         let item = |item: &Value| ReadItem {
@@ -198,8 +192,8 @@ fn parse_first(family: Family, lines: &[Vec<String>]) -> Parsed {
 /// Parses words into a command of a family.
 fn parse(family: Family, words: &[String]) -> Parsed {
     let face = families::of(family);
-    let parser = face.augment(clap::Command::new(family.name())).no_binary_name(true).disable_help_flag(true);
-    match parser.try_get_matches_from(words).and_then(|mut matches| face.read(&mut matches)) {
+    let parser = (face.augment)(clap::Command::new(family.name())).no_binary_name(true).disable_help_flag(true);
+    match parser.try_get_matches_from(words).and_then(|mut matches| (face.read)(&mut matches)) {
         Ok(FamilyLine { command: ParsedCommand::Command(command), .. }) => Ok(command),
         Ok(_) => Err(Failure::local("internal error: a shared line is a command of each family")),
         Err(error) => {

@@ -4,8 +4,6 @@ pub mod alarm;
 pub mod io;
 pub mod line;
 
-use futures_util::future::LocalBoxFuture;
-
 use crate::command::families::{self, FAMILIES};
 use armctl_frame::command::AnyContext;
 use armctl_frame::face::shared_commands::SharedVerb;
@@ -13,8 +11,7 @@ use armctl_frame::gate::Intent;
 use armctl_frame::output::csv::Sheet;
 use armctl_frame::prelude::*;
 use armctl_frame::robot::position::AllPositions;
-use armctl_frame::settings::target::{Address, Family};
-use armctl_frame::{AnyCommand, Connection, ConnectionEffect, Driver, Outcome, SchemaEntry};
+use armctl_frame::{AnyCommand, Driver, Outcome, SchemaEntry};
 
 /// A verb with the command of each family.
 pub struct SharedVerbCommands {
@@ -25,7 +22,7 @@ pub struct SharedVerbCommands {
 impl SharedVerbCommands {
     /// Creates a verb; `id` is its command id in envelopes and schemas.
     pub fn new(id: &'static str, verb: SharedVerb) -> Self {
-        Self { id, commands: FAMILIES.map(|face| (face.family(), face.shared(verb))) }
+        Self { id, commands: FAMILIES.map(|face| (face.family, (face.shared)(verb))) }
     }
 
     fn of(&self, robot: &Robot) -> &dyn AnyCommand {
@@ -51,8 +48,8 @@ impl AnyCommand for SharedVerbCommands {
         rest.iter().fold(first.1.intent(None), most)
     }
 
-    fn driver(&self) -> Option<&'static dyn Driver> {
-        Some(&PerRobot)
+    fn driver(&self) -> Option<&'static Driver> {
+        Some(&PER_ROBOT)
     }
 
     fn connect_mode(&self, robot: &Robot) -> ConnectMode {
@@ -86,35 +83,11 @@ pub fn schemas() -> Vec<SchemaEntry> {
 }
 
 /// Connects to each robot with the driver of its family.
-struct PerRobot;
-
-impl Driver for PerRobot {
-    fn family(&self) -> Option<Family> {
-        None
-    }
-
-    fn stop(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    fn connection_effect(&self, robot: &Robot, mode: ConnectMode) -> ConnectionEffect {
-        families::of(robot.family).driver().connection_effect(robot, mode)
-    }
-
-    fn takes_one_client(&self, robot: &Robot) -> bool {
-        families::of(robot.family).driver().takes_one_client(robot)
-    }
-
-    fn addresses(&self, robot: &Robot) -> Result<Vec<Address>, Failure> {
-        families::of(robot.family).driver().addresses(robot)
-    }
-
-    fn connect<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>> {
-        families::of(robot.family).driver().connect(robot, access, screen)
-    }
-}
+static PER_ROBOT: Driver = Driver {
+    family: None,
+    stop: &[],
+    connection_effect: |robot, mode| (families::driver(robot).connection_effect)(robot, mode),
+    takes_one_client: |robot| (families::driver(robot).takes_one_client)(robot),
+    addresses: |robot| (families::driver(robot).addresses)(robot),
+    connect: |robot, access, screen| (families::driver(robot).connect)(robot, access, screen),
+};

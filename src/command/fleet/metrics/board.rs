@@ -1,9 +1,6 @@
 //! Data behind the metrics: the newest sample of each robot, and counters since the robot appeared.
 
-use std::collections::BTreeMap;
 use std::rc::Rc;
-use std::sync::Arc;
-use std::time::Duration;
 
 use super::page::labels;
 use crate::command::fleet::also::AlsoCommand;
@@ -11,6 +8,7 @@ use crate::command::fleet::poll::{Event, PollResult, RobotId};
 use crate::command::fleet::service::kind;
 use armctl_frame::face::overview::OverviewReport;
 use armctl_frame::face::sample::{Axis, Traffic};
+use armctl_frame::prelude::*;
 
 /// Upper limits of the histogram buckets for poll times, in seconds. Longer times are only in the last bucket (`+Inf`).
 const RANGES: [f64; 9] = [0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5];

@@ -1,10 +1,5 @@
 //! Tests of the metrics, from events to the page.
 
-use std::sync::Arc;
-use std::time::Duration;
-
-use serde_json::{Value, json};
-
 use super::board::Board;
 use super::catalogue::{METRICS, page};
 use super::page::{Form, Kind};
@@ -12,9 +7,9 @@ use crate::command::fleet::also::AlsoArguments;
 use crate::command::fleet::poll::{Event, PollResult};
 use crate::command::fleet::top::testing::{fail, fleet, sample, with_alarm};
 use armctl_frame::face::sample::{Sample, Traffic};
+use armctl_frame::prelude::*;
 use armctl_frame::robot::alarm::Alarm;
 use armctl_frame::robot::state::Fault;
-use armctl_frame::settings::Robot;
 
 fn poll_event(robot: &Arc<Robot>, sample: Sample) -> Event {
     let traffic = Traffic { sent: 5, received: 4, disturbances: 1 };
@@ -188,7 +183,7 @@ fn limits_the_series_of_a_robot() {
 
 #[test]
 fn documents_each_metric() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/monitoring/README.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/monitoring/README.md");
     let page = std::fs::read_to_string(path).unwrap();
     let rows = page.lines().filter_map(|line| line.strip_prefix("| `armctl_")?.split('`').next());
     let mut rows: Vec<String> = rows.map(|row| format!("armctl_{row}")).collect();

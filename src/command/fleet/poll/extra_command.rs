@@ -1,10 +1,7 @@
 //! Extra read commands of consumers, which run with each poll of a robot: `yerc var get B0..B9`.
 
 use std::any::TypeId;
-use std::fmt;
-use std::path::PathBuf;
 use std::slice;
-use std::sync::Arc;
 
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches};
@@ -12,9 +9,7 @@ use clap::{Arg, ArgMatches};
 use crate::command::families;
 use armctl_frame::AnyCommand;
 use armctl_frame::face::family_command::{FamilyLine, ParsedCommand};
-use armctl_frame::names;
 use armctl_frame::prelude::*;
-use armctl_frame::settings::target::Family;
 
 /// An extra command. Two extra commands with the same text are equal.
 pub struct Extra {
@@ -27,7 +22,7 @@ pub struct Extra {
 }
 
 /// A parsed command, or the error.
-pub type Read = Result<Box<dyn AnyCommand>, Failure>;
+pub type Read = Result<Box<dyn AnyCommand>>;
 
 const EXAMPLE: &str = "type a command such as 'yerc var get B0..B9' or 'toyo counter get'";
 
@@ -36,7 +31,7 @@ impl Extra {
     ///
     /// # Errors
     /// If the text is not a command, does more than read, or does not end by itself.
-    pub fn parse(text: &str) -> Result<Self, Failure> {
+    pub fn parse(text: &str) -> Result<Self> {
         let wrong = |why: &str, hint: &str| Err(invalid(text, why, hint));
         let Some(words) = shlex::split(text) else { return wrong("has an unclosed quote", EXAMPLE) };
         if words.iter().any(|word| word.contains(';')) {
@@ -98,12 +93,12 @@ fn check_files(text: &str) -> Failure {
 /// Parses words into a command; the first word is the family.
 fn read(text: &str, family: Family, words: &[String]) -> Read {
     let face = families::of(family);
-    let parser = face.augment(clap::Command::new(family.name())).no_binary_name(false).disable_help_flag(true);
+    let parser = (face.augment)(clap::Command::new(family.name())).no_binary_name(false).disable_help_flag(true);
     let parsed = parser.clone().try_get_matches_from(words);
     if parsed.as_ref().is_ok_and(|matches| accepts_file(&parser, matches)) {
         return Err(check_files(text));
     }
-    match parsed.and_then(|mut matches| face.read(&mut matches)) {
+    match parsed.and_then(|mut matches| (face.read)(&mut matches)) {
         Ok(FamilyLine { command: ParsedCommand::Command(command), .. }) => Ok(command),
         Ok(_) => Err(invalid(text, "is not a command", EXAMPLE)),
         Err(error) => {

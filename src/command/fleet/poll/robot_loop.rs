@@ -1,10 +1,7 @@
 //! Polling loop of one robot.
 
 use std::collections::HashMap;
-use std::sync::Arc;
-use std::time::Duration;
 
-use serde_json::Value;
 use tokio::sync::watch;
 use tokio::time::{Instant, sleep_until, timeout};
 
@@ -14,8 +11,7 @@ use super::{CLOSE_TIMEOUT, Event, EventSender, Extra, PollResult, RobotId, wait_
 use crate::command::families;
 use armctl_controller::simulator::recording::AnswerLog;
 use armctl_frame::ConnectionEffect;
-use armctl_frame::face::Watch;
-use armctl_frame::face::sample::Traffic;
+use armctl_frame::face::{Traffic, Watch};
 use armctl_frame::prelude::*;
 use armctl_frame::session_client::is_held;
 use armctl_frame::shared_session::open_shared_session;
@@ -63,11 +59,11 @@ pub(super) async fn follow(mut follower: RobotTask) {
             opened = async {
                 sleep_until(start).await;
                 let family = families::of(robot.family);
-                let robot = &open_shared_session(family.driver(), robot).await?;
+                let robot = &open_shared_session(family.driver, robot).await?;
                 let is_shared = is_held(robot);
                 let answers = follower.requests.borrow().answers.then(|| follower.answers.clone());
                 let access = Access { answers, ..Access::reading(ConnectMode::Monitor) };
-                let watch = family.watch(robot, access, screen).await?;
+                let watch = (family.watch)(robot, access, screen).await?;
                 Ok(Link { watch, is_shared, reported: Traffic::default() })
             } => opened,
         };
@@ -176,7 +172,7 @@ impl RobotTask {
     }
 
     /// Polls once, and runs the extra commands.
-    async fn poll(&mut self, link: &mut Link, id: &RobotId, wants: &MergedRequests) -> Result<PollResult, Failure> {
+    async fn poll(&mut self, link: &mut Link, id: &RobotId, wants: &MergedRequests) -> Result<PollResult> {
         let robot = Arc::clone(&self.robot);
         let mut sample = link.watch.look(wants.detail(id)).await?;
         let unexplained = sample.line.state.fault.explain(&robot).err();
@@ -194,7 +190,7 @@ impl RobotTask {
     }
 
     /// Runs an extra command, unless it needs a connection whose end would affect the controller.
-    async fn ask(&mut self, link: &mut Link, extra: &Extra) -> Result<Value, Failure> {
+    async fn ask(&mut self, link: &mut Link, extra: &Extra) -> Result<Value> {
         let command = self.extra_commands.entry(Arc::clone(extra.text())).or_insert_with(|| extra.of(&self.robot));
         let command = match command {
             None => extra.command(),

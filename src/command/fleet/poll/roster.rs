@@ -54,7 +54,7 @@ impl Roster {
         let mut robot = robot.clone();
         if let Some(sources) = &self.sources {
             // A robot that does not answer is polled without other addresses, and the poll reports the failure.
-            let _ = identify(sources, families::of(robot.family).driver(), &mut robot, false);
+            let _ = identify(sources, families::driver(&robot), &mut robot, false);
         }
         robot
     }

@@ -1,10 +1,6 @@
 //! Tests of the poller with in-process simulators, in virtual time.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 use std::rc::Rc;
-use std::sync::Arc;
-use std::time::Duration;
 
 use futures_util::future::join;
 use tempfile::TempDir;
@@ -46,7 +42,7 @@ impl Plant {
         std::fs::write(self.path(), text).unwrap();
     }
 
-    fn poll(&self, selection: Selection) -> Result<Poll, Failure> {
+    fn poll(&self, selection: Selection) -> Result<Poll> {
         let inventory = Inventory::load(&Location::Named(self.path())).unwrap();
         Poll::new(&Sources { selection, inventory, ..Sources::default() }, Screen::silent())
     }

@@ -4,12 +4,10 @@
 //! A topic is on disk before its first message is sent. Before a topic is cleared, the broker is asked for its retained
 //! message, because another node may publish the same robot now.
 
-use std::collections::BTreeMap;
 use std::io::ErrorKind;
-use std::path::PathBuf;
 
-use armctl_files as files;
 use armctl_frame::failure::plain;
+use armctl_frame::prelude::*;
 
 /// Limit of the topics. Further topics are published, but not retained.
 const MAX_TOPICS: usize = 20_000;

@@ -1,20 +1,12 @@
 //! Addresses and credentials of the brokers, from the command line, files and the environment.
 
 use std::env;
-use std::fmt;
 use std::net::IpAddr;
-use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::sync::Arc;
-use std::time::Duration;
-
-use anyhow::Context as _;
-use clap::{Args, ValueEnum};
 
 use super::error_text;
 use super::uplink::{Endpoint, Hello, Identity, Tls, Trust, Version, Will};
-use armctl_files as files;
-use armctl_frame::failure::Failure;
+use armctl_frame::prelude::*;
 
 /// Keepalive interval of the connection.
 const KEEP_ALIVE: Duration = Duration::from_secs(30);
@@ -160,7 +152,7 @@ impl fmt::Debug for Secret {
 impl Broker {
     /// Settings of these brokers, with warnings about the storage and transmission of secrets. Each file is read once,
     /// because it can be a pipe.
-    pub fn for_urls(urls: &[Url], login: &Login) -> Result<(Vec<Self>, Vec<String>), Failure> {
+    pub fn for_urls(urls: &[Url], login: &Login) -> Result<(Vec<Self>, Vec<String>)> {
         let has_tls_words = login.ca.is_some() || login.cert.is_some();
         if has_tls_words && urls.iter().all(|url| !url.is_secure) {
             let host = urls.first().map_or("HOST", |url| &url.host);
@@ -228,7 +220,7 @@ impl Broker {
 
 /// Whether the group of the file, or other users, can read the file.
 #[cfg(unix)]
-fn others_can_read(path: &Path) -> Result<bool, Failure> {
+fn others_can_read(path: &Path) -> Result<bool> {
     use std::os::unix::fs::PermissionsExt as _;
 
     // Credentials of the service manager are in a private folder. Their access list appears as group permissions.
@@ -242,7 +234,7 @@ fn others_can_read(path: &Path) -> Result<bool, Failure> {
 /// File permissions are not checked on this system.
 #[cfg(not(unix))]
 #[expect(clippy::unnecessary_wraps, reason = "the Unix version reads the file's permissions")]
-fn others_can_read(_: &Path) -> Result<bool, Failure> {
+fn others_can_read(_: &Path) -> Result<bool> {
     Ok(false)
 }
 
@@ -254,12 +246,12 @@ fn is_this_machine(host: &str) -> bool {
     }
 }
 
-fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+fn bytes(path: &Path) -> Result<Vec<u8>> {
     Ok(files::read(path, MAX_FILE_SIZE).with_context(|| path.display().to_string())?)
 }
 
 /// Password from the file without its line end, or from the environment.
-fn password(login: &Login) -> Result<Option<Vec<u8>>, Failure> {
+fn password(login: &Login) -> Result<Option<Vec<u8>>> {
     if let Some(path) = &login.password_file {
         let mut password = bytes(path)?;
         while password.last().is_some_and(|last| matches!(last, b'\n' | b'\r')) {

@@ -8,9 +8,7 @@ mod storage;
 use std::future::{Future, pending, ready};
 use std::io;
 use std::pin::pin;
-use std::time::Duration;
 
-use futures_util::FutureExt as _;
 use jiff::Timestamp;
 use tokio::task::JoinHandle;
 use tokio::time::{Instant, sleep_until, timeout, timeout_at};
@@ -25,9 +23,9 @@ use super::outbox::{Outbox, Ticket};
 use super::uplink::{Event, Loss, Message, Refusal, SendError, Will};
 use crate::command::fleet::poll::Event as Found;
 use crate::command::fleet::service::END_TIMEOUT;
-use armctl_frame::failure::{Failure, Kind, plain};
+use armctl_frame::failure::plain;
 use armctl_frame::output::log::Level;
-use armctl_frame::settings::duration;
+use armctl_frame::prelude::*;
 
 /// Limits of messages in transit: `WINDOW` of messages with acknowledgement, `UNCONFIRMED_WINDOW` of messages without
 /// acknowledgement.
@@ -158,7 +156,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         &mut self,
         mut found: impl AsyncFnMut() -> Option<Found>,
         stop: impl Future<Output = ()>,
-    ) -> Result<(), Failure> {
+    ) -> Result<()> {
         let mut stop = pin!(stop);
         let mut has_more = true;
         loop {
@@ -239,7 +237,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     }
 
     /// Handles a step of the connection.
-    fn handle_step(&mut self, step: Step<B::Uplink>) -> Result<(), Failure> {
+    fn handle_step(&mut self, step: Step<B::Uplink>) -> Result<()> {
         match step {
             Step::Connect => {
                 let broker = self.brokers.current();
@@ -404,19 +402,19 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         self.lost_since = self.lost_since.or_else(|| self.brokers.was_accepted().then(Instant::now));
     }
 
-    fn handle_loss(&mut self, loss: &Loss) -> Result<(), Failure> {
+    fn handle_loss(&mut self, loss: &Loss) -> Result<()> {
         self.leave();
         self.fail(error_text::loss(self.brokers.current().url(), loss))
     }
 
-    fn handle_refusal(&mut self, refusal: &Refusal) -> Result<(), Failure> {
+    fn handle_refusal(&mut self, refusal: &Refusal) -> Result<()> {
         self.leave();
         self.fail(error_text::refusal(self.brokers.current().url(), refusal))
     }
 
     /// Continues with the next broker. After a round, waits before the next attempt: even the cause of a refusal or of a
     /// certificate error can be gone a minute later. Only a run with a limit (`--count`) gives up.
-    fn fail(&mut self, failure: Failure) -> Result<(), Failure> {
+    fn fail(&mut self, failure: Failure) -> Result<()> {
         // If the connection worked before, the settings are probably right, unless the broker reports an error in them.
         let is_setting = failure.kind == Kind::Usage || !self.brokers.was_current_accepted();
         let level = if self.brokers.is_new_failure(&failure.message) { Level::Warning } else { Level::Detail };

@@ -7,9 +7,7 @@
 //! The broker deletes a retained message of a robot if no newer message follows ([`expiry`]). Retained messages that
 //! this node no longer publishes are cleared ([`AnnouncedTopics`]).
 
-use std::collections::BTreeMap;
 use std::rc::Rc;
-use std::time::Duration;
 
 use jiff::Timestamp;
 use serde::Deserialize;
@@ -324,7 +322,6 @@ impl MessageFormat for PlainFormat {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
     use armctl_frame::face::sample::{Axis, Sample, Whole};

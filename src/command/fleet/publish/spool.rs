@@ -10,16 +10,13 @@
 use std::collections::VecDeque;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write as _};
-use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::time::Duration;
 
 use sha2::{Digest as _, Sha256};
 
 use super::broker::Url;
 use super::outbox::Record;
-use armctl_files as files;
-use armctl_frame::settings::duration;
+use armctl_frame::prelude::*;
 
 /// Size limit of a record in bytes.
 const MAX_RECORD_SIZE: usize = 1 << 20;
@@ -602,7 +599,7 @@ mod tests {
         ];
         assert_eq!(names[0], "cell7@mqtt-plant-a-1883");
         assert_eq!(names[3], "cell7@mqtt-%3A%3A1-1883");
-        assert_eq!(names.iter().collect::<std::collections::BTreeSet<_>>().len(), names.len());
+        assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());
         for same in ["tcp://plant-a:1883/", "mqtt://PLANT-A", "mqtt://plant-a:01883"] {
             assert_eq!(name(same, None, "cell7"), names[0]);
         }

@@ -25,8 +25,7 @@ use super::uplink::{Event, Loss, Message, Refusal, SendError, TlsError, Version,
 use super::{AlsoCommand, Kind, MessageFormat};
 use crate::command::fleet::poll::{Event as Found, PollResult};
 use crate::command::fleet::service::END_TIMEOUT;
-use armctl_frame::face::overview::OverviewReport;
-use armctl_frame::face::sample::{Sample, Traffic};
+use armctl_frame::face::{OverviewReport, Sample, Traffic};
 use armctl_frame::failure::{self, Failure};
 use armctl_frame::output::log::Level;
 use armctl_frame::robot::alarm::Alarm;

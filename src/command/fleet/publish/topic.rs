@@ -4,7 +4,6 @@
 //! allowed, are written as `%` and the hex digits of each byte, as in URLs: `+`, `#`, `/`, `%`, control characters, and
 //! a leading `$`. Two names therefore never have the same topic, and the name can be decoded.
 
-use std::collections::BTreeSet;
 use std::str::FromStr;
 
 use armctl_frame::prelude::*;
@@ -29,7 +28,7 @@ impl Levels {
     }
 
     /// Level of a robot.
-    pub fn level_of(&self, robot: &Robot) -> Result<String, Failure> {
+    pub fn level_of(&self, robot: &Robot) -> Result<String> {
         if self.shared.contains(&robot.name) {
             return level(&format!("{}-{}", robot.name, robot.family));
         }
@@ -117,7 +116,7 @@ impl Topics {
     ///
     /// # Errors
     /// If the template needs a level of the place that the robot does not have.
-    pub fn topic_of(&self, robot: &Robot, kind: &str) -> Result<String, Failure> {
+    pub fn topic_of(&self, robot: &Robot, kind: &str) -> Result<String> {
         let level_of = |part: &Part| match part {
             Part::Text(text) => Ok(text.clone()),
             Part::Prefix => Ok(self.prefix.clone()),
@@ -133,7 +132,7 @@ impl Topics {
                 }
             },
         };
-        Ok(self.template.0.iter().map(level_of).collect::<Result<Vec<_>, Failure>>()?.join("/"))
+        Ok(self.template.0.iter().map(level_of).collect::<Result<Vec<_>>>()?.join("/"))
     }
 }
 
@@ -141,7 +140,7 @@ impl Topics {
 const MAX_LEVEL_BYTES: usize = 200;
 
 /// Encodes a name as a level.
-pub fn level(name: &str) -> Result<String, Failure> {
+pub fn level(name: &str) -> Result<String> {
     let mut level = String::with_capacity(name.len());
     for (at, c) in name.char_indices() {
         if matches!(c, '+' | '#' | '/' | '%') || c.is_control() || (at == 0 && c == '$') || is_empty_level(c) {
@@ -196,7 +195,7 @@ pub fn identifier(text: &str) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use armctl_frame::settings::Sources;
-    use armctl_frame::settings::target::{Family, Target, TargetArgument};
+    use armctl_frame::settings::target::{Target, TargetArgument};
     use proptest::prelude::*;
 
     use super::*;

@@ -27,11 +27,11 @@ impl Family for Checked {
     type Link = Access;
     const STOP: &'static [&'static str] = &[];
 
-    async fn connect(_robot: &Robot, access: Access, _screen: &Screen) -> Result<Access, Failure> {
+    async fn connect(_robot: &Robot, access: Access, _screen: &Screen) -> Result<Access> {
         Ok(access)
     }
 
-    async fn halt(_link: &mut Access) -> Result<String, Failure> {
+    async fn halt(_link: &mut Access) -> Result<String> {
         Ok("no motion command was sent".to_owned())
     }
 
@@ -39,11 +39,11 @@ impl Family for Checked {
         Plan::default()
     }
 
-    fn addresses(robot: &Robot) -> Result<Vec<target::Address>, Failure> {
-        families::of(robot.family).driver().addresses(robot)
+    fn addresses(robot: &Robot) -> Result<Vec<target::Address>> {
+        (families::driver(robot).addresses)(robot)
     }
 
-    async fn close(_link: Access, _screen: &Screen) -> Result<(), Failure> {
+    async fn close(_link: Access, _screen: &Screen) -> Result<()> {
         Ok(())
     }
 }
@@ -54,7 +54,7 @@ impl Command for Check {
     const ID: &'static str = "robots.check";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
-    async fn run(&self, context: Context<'_, Checked>) -> Result<CheckReport, Failure> {
+    async fn run(&self, context: Context<'_, Checked>) -> Result<CheckReport> {
         let Context { robot, screen, .. } = context;
         let access = context.link.clone();
         if access.dry_run {
@@ -75,8 +75,8 @@ pub struct CheckReport {
 
 impl CheckReport {
     /// Checks each layer of a robot.
-    pub async fn of(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
-        let mut layers = families::of(robot.family).check(robot, access, screen).await?;
+    pub async fn of(robot: &Robot, access: Access, screen: &Screen) -> Result<Self> {
+        let mut layers = (families::of(robot.family).check)(robot, access, screen).await?;
         layers.extend(layers::drafts());
         Ok(Self { layers, family: robot.family.name() })
     }

@@ -1,11 +1,8 @@
 //! `armctl robots discover`: finds controllers on the network, and lists serial ports.
 
-use std::time::Duration;
-
 use clap::FromArgMatches as _;
 
 use armctl_frame::prelude::*;
-use armctl_frame::settings::duration;
 use armctl_toyo::ports::{self, Port};
 use armctl_yrcx::buses::Searches;
 use armctl_yrcx::discover::{self, FoundDevice};
@@ -38,7 +35,7 @@ fn wait(text: &str) -> Result<Duration, String> {
 
 impl Discover {
     /// Default arguments.
-    pub fn default_arguments() -> Result<Self, Failure> {
+    pub fn default_arguments() -> Result<Self> {
         let matches = Self::augment_args(clap::Command::new("discover")).get_matches_from(["discover"]);
         Self::from_arg_matches(&matches).map_err(|error| Failure::local(format!("internal error: {error}")))
     }
@@ -53,7 +50,7 @@ impl Discover {
     }
 
     /// Runs the search.
-    pub async fn find(self, run: &Run) -> Result<Discovered, Failure> {
+    pub async fn find(self, run: &Run) -> Result<Discovered> {
         let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Explicit) };
         run.begin_trace()?;
         let boards = discover::discover(&self.searches, self.wait, &access, &run.screen).await?;

@@ -2,10 +2,7 @@
 
 use std::io::Write as _;
 
-use anyhow::Context as _;
-
 use super::file;
-use armctl_files as files;
 use armctl_frame::editor_session::open_editor;
 use armctl_frame::prelude::*;
 use armctl_frame::settings::inventory::Inventory;

@@ -3,18 +3,16 @@
 use toml_edit::{Array, Table, Value, value};
 
 use super::file::change;
-use armctl_controller::similar_word::nearest;
 use armctl_controller::text::Encoding;
 use armctl_controller::yerc::Model;
 use armctl_frame::Candidate;
 use armctl_frame::output::jq::failure_after_change;
 use armctl_frame::output::view;
 use armctl_frame::prelude::*;
-use armctl_frame::settings::duration;
 use armctl_frame::settings::inventory::{Entry, Inventory, is_name, named};
 use armctl_frame::settings::model::ModelSetting;
 use armctl_frame::settings::place;
-use armctl_frame::settings::target::{Family, Target, TargetArgument};
+use armctl_frame::settings::target::{Target, TargetArgument};
 
 /// Arguments of `robots add`.
 #[derive(Debug, Args)]
@@ -141,7 +139,7 @@ pub struct Set {
 }
 
 /// Parses the typed text for a robot of a family into a TOML value.
-type Parse = fn(&str, Family) -> Result<Value, Failure>;
+type Parse = fn(&str, Family) -> Result<Value>;
 
 /// Settings of an entry: key, description, parser.
 const SETTINGS: [(&str, &str, Parse); 14] = [
@@ -195,7 +193,7 @@ fn candidates() -> Vec<Candidate> {
     keys.chain(models.map(|model| Candidate::new(format!("model={model}"), "model of a yerc robot"))).collect()
 }
 
-fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(text: &str) -> Result<T, Failure> {
+fn parsed<T: std::str::FromStr<Err: fmt::Display>>(text: &str) -> Result<T> {
     text.parse::<T>().map_err(|why| invalid(why.to_string(), "see `armctl help inventory`"))
 }
 
@@ -203,12 +201,12 @@ fn invalid(why: impl Into<String>, hint: &str) -> Failure {
     Failure::usage(why).hint(hint)
 }
 
-fn level(text: &str, _: Family) -> Result<Value, Failure> {
+fn level(text: &str, _: Family) -> Result<Value> {
     place::check(text).map_err(|why| invalid(why, "example: line=3"))?;
     Ok(text.into())
 }
 
-fn switch(text: &str) -> Result<bool, Failure> {
+fn switch(text: &str) -> Result<bool> {
     match text {
         "on" | "true" | "yes" => Ok(true),
         "off" | "false" | "no" => Ok(false),
@@ -239,13 +237,13 @@ pub fn set(run: &Run, id: &'static str, robot: String, settings: &[String]) -> R
 }
 
 /// Address of a name, as a number if the text is a number, as in a hand-written file.
-fn address(text: &str, family: Family) -> Result<Value, Failure> {
+fn address(text: &str, family: Family) -> Result<Value> {
     named(family, "any", text)?;
     Ok(text.parse::<i64>().map_or_else(|_| text.into(), Value::from))
 }
 
 /// Parses typed settings for a robot of a family: keys, and new values; `None` removes a setting.
-fn assignments(settings: &[String], family: Family) -> Result<Vec<(&str, Option<Value>)>, Failure> {
+fn assignments(settings: &[String], family: Family) -> Result<Vec<(&str, Option<Value>)>> {
     let settings = settings.iter().map(|setting| assignment(setting)).collect::<Result<Vec<_>, _>>()?;
     // The meaning of an address without a scheme depends on the family, which can be set in the same command.
     let typed = settings.iter().find(|(key, ..)| *key == "family").and_then(|(_, text, _)| text.parse().ok());
@@ -261,7 +259,7 @@ fn assignments(settings: &[String], family: Family) -> Result<Vec<(&str, Option<
 }
 
 /// Splits a typed setting into its key and text, and finds its parser.
-fn assignment(setting: &str) -> Result<(&str, &str, Parse), Failure> {
+fn assignment(setting: &str) -> Result<(&str, &str, Parse)> {
     let Some((key, text)) = setting.split_once('=') else {
         return Err(Failure::usage(format!("'{setting}' is not KEY=VALUE"))
             .hint("type settings such as read_only=off or timeout=5s"));
@@ -419,7 +417,7 @@ fn changes_text(reported: Result<(), RunError>) -> Result<(), RunError> {
 }
 
 /// Checks that a name is valid and not in use.
-pub fn check_new(inventory: &Inventory, name: &str) -> Result<(), Failure> {
+pub fn check_new(inventory: &Inventory, name: &str) -> Result<()> {
     if !is_name(name) {
         return Err(
             Failure::usage(format!("'{name}' is not a valid robot name")).hint("use letters, digits, '-', '_' and '.'")
@@ -435,7 +433,7 @@ pub fn check_new(inventory: &Inventory, name: &str) -> Result<(), Failure> {
 }
 
 /// Entry with this name.
-pub fn check_known<'a>(inventory: &'a Inventory, name: &str) -> Result<&'a Entry, Failure> {
+pub fn check_known<'a>(inventory: &'a Inventory, name: &str) -> Result<&'a Entry> {
     inventory.robots.iter().find(|robot| robot.name == name).ok_or_else(|| {
         let failure = Failure::usage(format!("there is no robot '{name}' in the inventory"));
         match nearest(name, inventory.robots.iter().map(|robot| robot.name.as_str())) {

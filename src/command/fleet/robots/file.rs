@@ -1,17 +1,12 @@
 //! Write access to `robots.toml`; only this module changes the file.
 
-use std::path::Path;
-
-use anyhow::Context as _;
-
-use armctl_files as files;
 use armctl_frame::output::busy_work::register;
 use armctl_frame::prelude::*;
 use armctl_frame::settings::document::{Document, DocumentError};
 use armctl_frame::settings::inventory::Inventory;
 
 /// Path of the inventory file, whether it exists or not.
-pub fn path(run: &Run) -> Result<&Path, Failure> {
+pub fn path(run: &Run) -> Result<&Path> {
     run.sources
         .inventory
         .path
@@ -20,7 +15,7 @@ pub fn path(run: &Run) -> Result<&Path, Failure> {
 }
 
 /// Content of the file; empty if it does not exist.
-pub fn read(path: &Path) -> Result<String, Failure> {
+pub fn read(path: &Path) -> Result<String> {
     match files::text(path, files::SETTINGS) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
         text => Ok(text.with_context(|| path.display().to_string())?),
@@ -28,10 +23,10 @@ pub fn read(path: &Path) -> Result<String, Failure> {
 }
 
 /// Changes the file. A new version is written next to the file, and then renamed. Returns the path.
-pub fn change(run: &Run, change: impl FnOnce(&mut Document) -> Result<(), DocumentError>) -> Result<String, Failure> {
+pub fn change(run: &Run, change: impl FnOnce(&mut Document) -> Result<(), DocumentError>) -> Result<String> {
     let path = path(run)?;
     replace(path, |text| {
-        let invalid = |why: &dyn std::fmt::Display| {
+        let invalid = |why: &dyn fmt::Display| {
             Failure::usage(format!("{}: {why}", path.display()))
                 .hint("correct the file with `armctl robots edit`; see `armctl help inventory`")
         };
@@ -43,7 +38,7 @@ pub fn change(run: &Run, change: impl FnOnce(&mut Document) -> Result<(), Docume
 }
 
 /// Replaces the file with the result of `make`. A version that cannot be parsed is not written.
-pub fn replace(path: &Path, make: impl FnOnce(&str) -> Result<String, Failure>) -> Result<Inventory, Failure> {
+pub fn replace(path: &Path, make: impl FnOnce(&str) -> Result<String>) -> Result<Inventory> {
     let _busy = register();
     // Locks out other processes between the read and the write.
     let _turn = files::lock_file(path).with_context(|| path.display().to_string())?;

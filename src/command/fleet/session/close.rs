@@ -2,7 +2,6 @@
 
 use super::list::locations;
 use crate::command::families;
-use armctl_controller::similar_word::nearest;
 use armctl_frame::interrupt::catch_interrupts;
 use armctl_frame::prelude::*;
 use armctl_frame::prompt::ask;
@@ -41,7 +40,7 @@ struct Session {
 }
 
 /// Session that the user chooses; `None` without sessions or without a terminal.
-async fn choose(run: &Run) -> Result<Option<String>, Failure> {
+async fn choose(run: &Run) -> Result<Option<String>> {
     if !run.screen.can_choose() {
         return Ok(None);
     }
@@ -82,7 +81,7 @@ impl Close {
         let mut selected = if target.is_some() { run.sources.robots(None).unwrap_or_default() } else { Vec::new() };
         for robot in &mut selected {
             // A robot that does not answer is identified by the typed address.
-            let _ = identify(&run.sources, families::of(robot.family).driver(), robot, false);
+            let _ = identify(&run.sources, families::driver(robot), robot, false);
         }
         let is_named = |info: &Info, name: &str| {
             let is_meant =

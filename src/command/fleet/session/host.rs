@@ -1,13 +1,9 @@
 //! Session hosts in this process: for `session open`, or for the prompt and command files.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
 use std::rc::Rc;
-use std::sync::Arc;
 use std::thread::JoinHandle;
-use std::time::Duration;
 
-use anyhow::Context as _;
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::task::{JoinSet, LocalSet};
 
@@ -28,7 +24,7 @@ pub struct SessionHost {
     /// Stops the motions of clients when this process ends.
     guardian: Rc<SessionGuardian>,
     /// Action after the link is closed.
-    finish: Option<Box<dyn FnOnce() -> Result<(), Failure>>>,
+    finish: Option<Box<dyn FnOnce() -> Result<()>>>,
     label: String,
 }
 
@@ -49,7 +45,7 @@ impl SessionHost {
         access: &Access,
         screen: &Screen,
         log: impl Fn(&str) + Clone + Send + 'static,
-    ) -> Result<OpenResult, Failure> {
+    ) -> Result<OpenResult> {
         let place = match SessionFolder::create() {
             Ok(place) => place,
             Err(error) => return Ok(OpenResult::NoPlace(folder_failure(&error))),
@@ -64,20 +60,20 @@ impl SessionHost {
         };
         let info = info(robot, access);
         let face = families::of(robot.family);
-        let HeldLink { held, finish } = face.open_session_link(robot, access, screen).await?;
+        let HeldLink { held, finish } = (face.open_session_link)(robot, access, screen).await?;
         let host =
             Host::new(claim, key, info, held, log.clone()).with_context(|| location.socket().display().to_string())?;
         let orphaned_robot = robot.clone();
-        let guardian = Rc::new(SessionGuardian::new(robot, face.stop()));
+        let guardian = Rc::new(SessionGuardian::new(robot, face.driver.stop));
         let guardian_result = Rc::clone(&guardian);
         let is_simulated = robot.target.value.is_simulated();
         let host = host.with_guard(move |moves| if is_simulated { Ok(()) } else { guardian_result.set_moving(moves) });
         let host = host.with_stop(move |why| {
             log(&format!("{why}: armctl stops the robot"));
-            guardian::stop_orphan(&orphaned_robot, face.stop(), log.clone());
+            guardian::stop_orphan(&orphaned_robot, face.driver.stop, log.clone());
         });
         let mut entry = WatchedEntry::new(robot);
-        let host = host.with_read_only_check(face.guard(), move || entry.is_read_only());
+        let host = host.with_read_only_check(face.guard, move || entry.is_read_only());
         Ok(OpenResult::SharedLink(Box::new(Self { host, guardian, finish, label: robot.label() })))
     }
 
@@ -104,7 +100,7 @@ impl SessionHost {
     }
 
     /// Ends the session: informs clients, closes the link, completes the recording.
-    pub async fn end(self, why: &str, screen: &Screen) -> Result<(), Failure> {
+    pub async fn end(self, why: &str, screen: &Screen) -> Result<()> {
         if let Err(trouble) = self.host.end(why).await {
             screen.note(&format!("{}: the connection was not closed correctly: {trouble}", self.label));
         }
@@ -116,7 +112,7 @@ impl SessionHost {
 type Say = Arc<dyn Fn(&str) + Send + Sync>;
 
 /// Starts the thread without a link. Log messages go to `say`.
-pub fn start(say: impl Fn(&str) + Send + Sync + 'static) -> Result<(SessionManager, ManagerThread), Failure> {
+pub fn start(say: impl Fn(&str) + Send + Sync + 'static) -> Result<(SessionManager, ManagerThread)> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.context("start")?;
     let (orders, ordered) = mpsc::unbounded_channel();
@@ -172,7 +168,7 @@ async fn open_session_link(
     robot: Robot,
     access: Access,
     screen: Screen,
-    mut done: oneshot::Sender<Result<HeldBy, Failure>>,
+    mut done: oneshot::Sender<Result<HeldBy>>,
     held: Rc<RefCell<BTreeMap<String, HostHandle>>>,
     say: Say,
     mut ended: watch::Receiver<bool>,
@@ -183,7 +179,7 @@ async fn open_session_link(
         let (say, label) = (Arc::clone(&say), label.clone());
         move |text: &str| say(&format!("{label}: {text}"))
     };
-    let records = families::of(robot.family).session_records();
+    let records = families::of(robot.family).session_records;
     let own = |host| HeldBy::ThisProcess(OwnSession { key: own_key(&robot), host, records });
     // Robots with several addresses: another line has opened the link with another address.
     if let Some(host) = held.borrow().get(&key) {

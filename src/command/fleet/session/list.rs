@@ -1,7 +1,5 @@
 //! `armctl session list`: open sessions and their clients.
 
-use std::time::Duration;
-
 use jiff::Timestamp;
 
 use armctl_frame::prelude::*;
@@ -26,7 +24,7 @@ impl List {
 }
 
 /// Locations of sessions, alive or dead.
-pub fn locations() -> Result<Vec<SessionPath>, Failure> {
+pub fn locations() -> Result<Vec<SessionPath>> {
     match SessionFolder::find().and_then(|place| place.map_or(Ok(Vec::new()), |place| place.locations())) {
         Ok(locations) => Ok(locations),
         Err(error) => Err(folder_failure(&error)),

@@ -2,11 +2,9 @@
 
 use std::fs::OpenOptions;
 use std::io::Write as _;
-use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
 
-use anyhow::Context as _;
 use jiff::Timestamp;
 
 use super::host::{OpenResult, SessionHost};
@@ -17,8 +15,6 @@ use armctl_frame::output::log::Level;
 use armctl_frame::prelude::*;
 use armctl_frame::repeat_limiter::{Line, RepeatLimiter};
 use armctl_frame::session_client::{folder_failure, format_since, identify, session_key};
-use armctl_frame::settings::duration;
-use armctl_frame::settings::target::Family;
 use armctl_transport::session::client::status;
 use armctl_transport::session::host::EndReason;
 use armctl_transport::session::leave_terminal;
@@ -53,10 +49,9 @@ impl Open {
             return Err(Failure::usage("a session is for one robot").hint("open a session for each robot").into());
         };
         if !run.gate.dry_run {
-            identify(&run.sources, families::of(robot.family).driver(), robot, true)?;
+            identify(&run.sources, families::driver(robot), robot, true)?;
         }
-        if robot.read_only.value && families::of(robot.family).session_commands() && !robot.target.value.is_simulated()
-        {
+        if robot.read_only.value && families::of(robot.family).session_commands && !robot.target.value.is_simulated() {
             let message = format!("{} is read-only, but a session takes control of the controller", robot.label());
             return Err(Failure::new(Kind::Rejected, message)
                 .hint(
@@ -70,7 +65,7 @@ impl Open {
                 .hint("remove --dry-run")
                 .into());
         }
-        if run.trace.is_some() && !families::of(robot.family).session_records() {
+        if run.trace.is_some() && !families::of(robot.family).session_records {
             return Err(Failure::usage(format!("a session of {} has no recording", robot.family))
                 .hint("use --trace with the commands that use the session")
                 .into());
@@ -101,7 +96,7 @@ impl Open {
     }
 
     /// Opens the link, and accepts clients.
-    async fn open(run: &Run, robot: &Robot, background: bool) -> Result<(Box<SessionHost>, Opened), Failure> {
+    async fn open(run: &Run, robot: &Robot, background: bool) -> Result<(Box<SessionHost>, Opened)> {
         let place = SessionFolder::create().map_err(|error| folder_failure(&error))?;
         let location = place.location(&session_key(robot));
         let log = background.then(|| location.log());
@@ -122,7 +117,7 @@ impl Open {
     }
 
     /// Serves until the session is closed or idle; both are normal.
-    async fn serve(&self, run: &Run, holding: Box<SessionHost>) -> Result<(), Failure> {
+    async fn serve(&self, run: &Run, holding: Box<SessionHost>) -> Result<()> {
         let mut holding = holding.with_idle_limit(self.idle);
         let why = match interruptible(holding.serve()).await {
             Ok(EndReason::Requested) => "the session was closed".to_owned(),

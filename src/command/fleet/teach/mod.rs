@@ -64,5 +64,5 @@ impl Teach {
 #[expect(async_fn_in_trait, reason = "all code runs on one thread")]
 pub trait CommandRunner {
     /// Runs a command line of the family, and returns the data of its report.
-    async fn run(&self, words: &[String]) -> Result<serde_json::Value, Failure>;
+    async fn run(&self, words: &[String]) -> Result<Value, Failure>;
 }

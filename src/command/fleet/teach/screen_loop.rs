@@ -1,11 +1,8 @@
 //! Event loop of the teach panel: runs the command lines of keys, one motion at a time.
 
-use std::time::Duration;
-
 use futures_util::StreamExt as _;
-use futures_util::future::{FutureExt as _, LocalBoxFuture};
+use futures_util::future::FutureExt as _;
 use futures_util::stream::FuturesUnordered;
-use serde_json::Value;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep_until};
 
@@ -28,11 +25,11 @@ const MAX_BACKOFF: Duration = Duration::from_secs(1);
 
 enum LoopEvent {
     /// Content of a point.
-    Found(u32, Result<Value, Failure>),
+    Found(u32, Result<Value>),
     /// Result of the command with this number; `true` if other commands wait for it.
-    Line(u64, bool, Result<(), Failure>),
+    Line(u64, bool, Result<()>),
     /// Result of a step, with its command line, if a command line was run.
-    Step(u64, Vec<String>, Result<(), Failure>),
+    Step(u64, Vec<String>, Result<()>),
 }
 
 type Running<'a> = FuturesUnordered<LocalBoxFuture<'a, LoopEvent>>;
@@ -44,7 +41,7 @@ pub async fn show(
     panel: Panel,
     teach: &Teach,
     lines: &impl CommandRunner,
-) -> Result<(), Failure> {
+) -> Result<()> {
     let mut model = Model::new(panel, teach.max_step, teach.max_speed);
     if let Some(SmallStep { words, size }) = panel.small_step {
         let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
@@ -93,15 +90,11 @@ struct TeachScreen<'a, L> {
     lines: &'a L,
     start: Instant,
     /// Result of the panel, after the user quits. The panel ends when no command is in progress.
-    is_leaving: Option<Result<(), Failure>>,
+    is_leaving: Option<Result<()>>,
 }
 
 impl<'a, L: CommandRunner> TeachScreen<'a, L> {
-    async fn run(
-        &mut self,
-        updates: &mut Subscription,
-        mut events: mpsc::UnboundedReceiver<Event>,
-    ) -> Result<(), Failure> {
+    async fn run(&mut self, updates: &mut Subscription, mut events: mpsc::UnboundedReceiver<Event>) -> Result<()> {
         let mut running: Running<'a> = FuturesUnordered::new();
         loop {
             if let Some(leaving) = self.is_leaving.take_if(|_| running.is_empty()) {
@@ -134,13 +127,13 @@ impl<'a, L: CommandRunner> TeachScreen<'a, L> {
         }
     }
 
-    fn quit(&mut self, how: Result<(), Failure>) {
+    fn quit(&mut self, how: Result<()>) {
         if self.is_leaving.is_none() {
             self.is_leaving = Some(how);
         }
     }
 
-    fn draw(&mut self) -> Result<(), Failure> {
+    fn draw(&mut self) -> Result<()> {
         let (model, palette) = (&self.model, self.palette);
         self.contact.select_axis(model.axis_name());
         let robot = Shown { seen: &self.contact, now: self.start.elapsed(), is_real: self.is_real_controller };
@@ -148,11 +141,7 @@ impl<'a, L: CommandRunner> TeachScreen<'a, L> {
     }
 
     /// Starts the command of an action. To quit during a motion, the panel first stops the robot.
-    fn execute(
-        &mut self,
-        wish: PanelCommand,
-        running: &Running<'a>,
-    ) -> Result<Option<LocalBoxFuture<'a, LoopEvent>>, Failure> {
+    fn execute(&mut self, wish: PanelCommand, running: &Running<'a>) -> Result<Option<LocalBoxFuture<'a, LoopEvent>>> {
         let panel = self.model.panel;
         let line = match wish {
             PanelCommand::Refresh => {

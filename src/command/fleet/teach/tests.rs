@@ -1,12 +1,8 @@
 //! Tests of keys and screen of the panel. `ARMCTL_BLESS=1` writes the screens again; check the diff.
 
-use std::path::Path;
-use std::time::Duration;
-
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
-use serde_json::json;
 
 use super::keys::KeyAction;
 use super::model::{Model, PanelCommand, PointUse, Prompt};
@@ -14,12 +10,11 @@ use super::view::{Robot, render};
 use crate::command::families;
 use crate::command::fleet::top;
 use crate::command::fleet::top::testing::{fleet, sample};
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::output::painter::Palette;
-use armctl_frame::settings::target::Family;
+use armctl_frame::prelude::*;
 
 fn model(family: Family) -> Model {
-    Model::new(families::of(family).panel(), 10.0, 10)
+    Model::new(families::of(family).panel, 10.0, 10)
 }
 
 fn typed(model: &mut Model, keys: &str) -> Option<PanelCommand> {
@@ -39,13 +34,13 @@ fn one_key_is_one_step_and_further_keys_wait() {
 
 #[test]
 fn limits_the_step_size() {
-    let mut yerc = Model::new(families::of(Family::Yerc).panel(), 1.0, 10);
+    let mut yerc = Model::new(families::of(Family::Yerc).panel, 1.0, 10);
     for _ in 0..9 {
         yerc.handle_key(KeyAction::StepSize(1));
     }
     assert_eq!(yerc.step(), Some(1.0));
     // The controller's small step is 0.05 mm, so a hundred of them are 5 mm.
-    let mut toyo = Model::new(families::of(Family::Toyo).panel(), 1.0, 10);
+    let mut toyo = Model::new(families::of(Family::Toyo).panel, 1.0, 10);
     toyo.scale_by(vec![0.05; 4]);
     for _ in 0..9 {
         toyo.handle_key(KeyAction::StepSize(1));
@@ -55,7 +50,7 @@ fn limits_the_step_size() {
         (Some(0.5), Some(PanelCommand::Step { axis: 0, by: 10.0 }))
     );
     // All steps are above the limit, so nothing moves.
-    let mut none = Model::new(families::of(Family::Yerc).panel(), 0.001, 10);
+    let mut none = Model::new(families::of(Family::Yerc).panel, 0.001, 10);
     assert_eq!((none.step(), none.handle_key(KeyAction::Step(true))), (None, None));
 }
 

@@ -2,14 +2,12 @@
 //! samples, keys and the time. It has no terminal, no link and no clock.
 
 use std::collections::VecDeque;
-use std::time::Duration;
 
 use super::keys::KeyAction;
 use super::track::Track;
 use crate::command::fleet::poll::{Event, RobotId};
 use armctl_frame::face::sample::Sample;
 use armctl_frame::prelude::*;
-use armctl_frame::settings::target;
 
 /// Time since the view started.
 pub type Moment = Duration;
@@ -98,7 +96,7 @@ pub struct RobotRow {
     /// Name.
     pub name: String,
     /// Family.
-    pub family: target::Family,
+    pub family: Family,
     /// Target URL.
     pub place: String,
     tags: Vec<String>,
@@ -211,7 +209,7 @@ impl Model {
     }
 
     /// Handles the result of a poll.
-    pub fn take(&mut self, now: Moment, robot: usize, looked: Result<Sample, Failure>) {
+    pub fn take(&mut self, now: Moment, robot: usize, looked: Result<Sample>) {
         let every = self.every;
         if let Some(seen) = self.robots.get_mut(robot) {
             seen.take(now, every, looked);
@@ -345,7 +343,7 @@ impl RobotRow {
         own.into_iter().chain(self.tags.iter().map(String::as_str)).any(|text| text.to_lowercase().contains(wanted))
     }
 
-    fn take(&mut self, now: Moment, every: Duration, looked: Result<Sample, Failure>) {
+    fn take(&mut self, now: Moment, every: Duration, looked: Result<Sample>) {
         let sample = match looked {
             Ok(sample) => sample,
             Err(failure) => {

@@ -8,8 +8,6 @@ use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
 use armctl_frame::settings::inventory::Inventory;
 use armctl_frame::settings::{Selection, Sources};
 
-use std::time::Duration;
-
 /// Robots cell1, cell2 and so on, of the three families in turn.
 pub fn fleet(robots: usize) -> Vec<Robot> {
     let target = |number: usize| match number % 3 {

@@ -8,23 +8,17 @@ pub mod testing;
 
 use std::io::{self, Read};
 use std::net::{IpAddr, SocketAddr};
-use std::path::Path;
-use std::sync::Arc;
-use std::time::Duration;
 
-use anyhow::Context as _;
 use jiff::Timestamp;
 
 pub use self::report::Capture;
 use self::report::{Links, Problems, TOO_MANY_MESSAGES, count_text};
 use super::Field;
-use crate::Report as _;
 use crate::output::Format;
 use crate::output::busy_work::register;
 use crate::output::envelope::ErrorBody;
 use crate::prelude::basics::*;
 use crate::run::{Run, RunError};
-use armctl_files as files;
 use armctl_transport::capture::{Carrier, Message, OpenError, Summary, read_while};
 pub use armctl_transport::capture::{holds_telegram, parse_hex};
 use armctl_transport::tap::Direction;
@@ -301,7 +295,7 @@ struct Source<'a, O> {
 impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
     /// Content of the file, unless it does not fit into memory and must be streamed; also the decoder, ready to
     /// restart.
-    fn capture<D: CaptureDecoder>(&self, mut decoder: D, room: usize, detail: Detail) -> Result<Captured<D>, Failure> {
+    fn capture<D: CaptureDecoder>(&self, mut decoder: D, room: usize, detail: Detail) -> Result<Captured<D>> {
         let frame = self.selection.frame;
         let mut kept = MessageBuffer::new(room, frame, detail);
         // For one packet, the links are still those of the whole file.
@@ -363,7 +357,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         decoder: &mut D,
         detail: Detail,
         mut each: impl FnMut(DecodedMessage<D::Field>) -> bool,
-    ) -> Result<Summary, Failure> {
+    ) -> Result<Summary> {
         decoder.decoded().detail = detail;
         let mut pass_on = |decoder: &mut D| decoder.decoded().messages.drain(..).all(&mut each);
         let mut is_wanted = true;

@@ -2,16 +2,12 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::sync::Arc;
-use std::time::Duration;
 
 use serde::Serializer;
-use serde_json::Value;
 
 use super::DecodedMessage;
-use crate::Report;
 use crate::decode::{Field, field_table, in_parentheses, problem_lines};
-use crate::output::csv::{self, RowsOf, neutralize_formula};
+use crate::output::csv::{self, neutralize_formula};
 use crate::prelude::basics::*;
 use armctl_transport::tap::Direction;
 
@@ -358,7 +354,6 @@ pub fn count_text(count: u64, what: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
 
     use super::*;
     use crate::output::csv::Sheet;

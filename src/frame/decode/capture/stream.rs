@@ -8,10 +8,9 @@ use serde::ser::{Serialize, SerializeSeq as _, Serializer};
 
 use super::report::{COLUMNS, Capture, Extremes, Link, Links, MESSAGE, Problems, Row, message_cell};
 use super::{CaptureDecoder, DecodedCapture, DecodedMessage, Detail, ReportEnvelope, Source};
-use crate::Report as _;
 use crate::output::Format;
 use crate::output::busy_work::register;
-use crate::output::csv::{RowsOf, Sheet};
+use crate::output::csv::Sheet;
 use crate::output::render::{self, Layout};
 use crate::prelude::basics::*;
 use crate::run::{Run, RunError};
@@ -84,11 +83,7 @@ struct SecondPass<'a, 'b, O> {
 
 impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
     /// Passes on every message until the callback ends.
-    fn rows<D: CaptureDecoder>(
-        &self,
-        mut decoder: D,
-        mut each: impl FnMut(Row<D::Field>) -> bool,
-    ) -> Result<(), Failure> {
+    fn rows<D: CaptureDecoder>(&self, mut decoder: D, mut each: impl FnMut(Row<D::Field>) -> bool) -> Result<()> {
         let mut links = Links::default();
         let mut left = self.all;
         let row = |message: DecodedMessage<D::Field>| {
@@ -105,7 +100,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
         about: &Capture<D::Field>,
         layout: Layout,
         decoder: D,
-    ) -> Result<(), Failure> {
+    ) -> Result<()> {
         let screen = &run.screen;
         let (width, color) = (screen.width(), screen.stdout_color());
         let text = |text: String| render::text(&View::text(text), width, color);
@@ -137,7 +132,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
     }
 
     /// Messages as CSV, without their lists of fields.
-    fn csv<D: CaptureDecoder>(&self, run: &Run, decoder: D) -> Result<(), Failure> {
+    fn csv<D: CaptureDecoder>(&self, run: &Run, decoder: D) -> Result<()> {
         let sheet = Sheet::from_schema(&schema_of::<Capture<D::Field>>().to_value(), RowsOf::List("messages"));
         let (mut text, mut count) = (sheet.header(&[]), 0_usize);
         let mut written = Ok(());
