@@ -14,18 +14,32 @@ pub trait Kind: Debug + 'static {
     const TYPE_NAME: &'static str;
     /// Word of the type in `toyo run`.
     const WORD: &'static str;
-    /// Names of the reports of `copy`, `select` and `run`.
-    const IDS: [&'static str; 3];
+    /// Name of the report of `copy`.
+    const COPY_ID: &'static str;
+    /// Name of the report of `select`.
+    const SELECT_ID: &'static str;
+    /// Name of the report of `toyo run`.
+    const RUN_ID: &'static str;
     /// Number of programs.
     const COUNT: i64;
     /// Text for a copy that completes "This will …".
     const INTENT: &'static str;
-    /// Help texts for the source, the target, and the selected program.
-    const HELP: [&'static str; 3];
+    /// Help text of the program to copy.
+    const FROM_HELP: &'static str;
+    /// Help text of the program to replace.
+    const TO_HELP: &'static str;
+    /// Help text of the program to select.
+    const SELECT_HELP: &'static str;
     /// Command that starts the selected program.
     const RUN: &'static str;
-    /// Protocol commands that copy a program, select a program, report the selected program, and start it.
-    const COMMANDS: [table::Command; 4];
+    /// Protocol command that copies a program.
+    const COPY: table::Command;
+    /// Protocol command that selects a program.
+    const SELECT: table::Command;
+    /// Protocol command that reports the selected program.
+    const SELECTED: table::Command;
+    /// Protocol command that starts the selected program.
+    const START: table::Command;
     /// Additional help of `toyo run`.
     const RUN_HELP: Option<&'static str> = None;
 
@@ -38,9 +52,9 @@ pub trait Kind: Debug + 'static {
 /// Copy a program to another number, if the two programs differ.
 #[derive(Debug, Args)]
 pub struct Copy<K: Kind> {
-    #[arg(value_name = "FROM", help = K::HELP[0], value_parser = |text: &str| number(K::field(), text))]
+    #[arg(value_name = "FROM", help = K::FROM_HELP, value_parser = |text: &str| number(K::field(), text))]
     from: i32,
-    #[arg(value_name = "TO", help = K::HELP[1], value_parser = |text: &str| number(K::field(), text))]
+    #[arg(value_name = "TO", help = K::TO_HELP, value_parser = |text: &str| number(K::field(), text))]
     to: i32,
     #[arg(skip)]
     of: PhantomData<K>,
@@ -49,7 +63,7 @@ pub struct Copy<K: Kind> {
 /// Select the program that `toyo run` starts.
 #[derive(Debug, Args)]
 pub struct Select<K: Kind> {
-    #[arg(value_name = "PROGRAM", help = K::HELP[2], value_parser = |text: &str| number(K::field(), text))]
+    #[arg(value_name = "PROGRAM", help = K::SELECT_HELP, value_parser = |text: &str| number(K::field(), text))]
     program: i32,
     #[arg(skip)]
     of: PhantomData<K>,
@@ -58,14 +72,14 @@ pub struct Select<K: Kind> {
 impl<K: Kind> Command for Copy<K> {
     type Family = Toyo;
     type Report = Copied;
-    const ID: &'static str = K::IDS[0];
+    const ID: &'static str = K::COPY_ID;
     const RISK: Risk = Risk::Destroy;
     const INTENT: &'static str = K::INTENT;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied> {
         let Self { from, to, .. } = *self;
-        let order = Request::new(K::COMMANDS[0], vec![Value::Number(from), Value::Number(to)]);
+        let order = Request::new(K::COPY, vec![Value::Number(from), Value::Number(to)]);
         let order = order.map_err(|error| wrong(&error))?;
         let copy = program_copy::Copy { what: K::TYPE_NAME, from, to, order, reads: [K::reads(from)?, K::reads(to)?] };
         copy.make(context.link, context.screen, &context.confirmer).await
@@ -75,12 +89,12 @@ impl<K: Kind> Command for Copy<K> {
 impl<K: Kind> Command for Select<K> {
     type Family = Toyo;
     type Report = SetReport;
-    const ID: &'static str = K::IDS[1];
+    const ID: &'static str = K::SELECT_ID;
     const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport> {
-        let (link, order) = (context.link, Request::of(K::COMMANDS[1], [Value::Number(self.program)]));
-        let selection_read = Request::bare(K::COMMANDS[2]);
+        let (link, order) = (context.link, Request::of(K::SELECT, [Value::Number(self.program)]));
+        let selection_read = Request::bare(K::SELECTED);
         let old = Old::read(link.before(&selection_read).await?.and_then(|record| record.number("program")));
         link.ask(&order).await?;
         let selected = read_back(link, &order, &selection_read).await?.number("program");

@@ -92,7 +92,7 @@ pub struct Numbered<K: ProgramKind> {
 impl<K: ProgramKind> Command for Numbered<K> {
     type Family = Toyo;
     type Report = RunReport;
-    const ID: &'static str = K::IDS[2];
+    const ID: &'static str = K::RUN_ID;
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
@@ -106,12 +106,12 @@ impl<K: ProgramKind> Command for Numbered<K> {
 
     async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport> {
         let program = self.number.or(self.program);
-        let [_, select, progress, start] = K::COMMANDS;
-        confirm_start(&mut context, Change::new(self.intent()), Program::Numbered(K::WORD, progress, program)).await?;
+        confirm_start(&mut context, Change::new(self.intent()), Program::Numbered(K::WORD, K::SELECTED, program))
+            .await?;
         if let Some(number) = program {
-            context.link.ask(&Request::of(select, [Value::Number(number)])).await?;
+            context.link.ask(&Request::of(K::SELECT, [Value::Number(number)])).await?;
         }
-        let report = start_and_wait(context, &Request::bare(start), self.end.limit(), self.repeat).await?;
+        let report = start_and_wait(context, &Request::bare(K::START), self.end.limit(), self.repeat).await?;
         Ok(report.of(K::WORD, program))
     }
 }

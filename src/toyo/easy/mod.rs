@@ -40,12 +40,19 @@ pub struct Numbered;
 impl Kind for Numbered {
     const TYPE_NAME: &'static str = "easy program";
     const WORD: &'static str = "easy";
-    const IDS: [&'static str; 3] = ["toyo.easy.copy", "toyo.easy.select", "toyo.run.easy"];
+    const COPY_ID: &'static str = "toyo.easy.copy";
+    const SELECT_ID: &'static str = "toyo.easy.select";
+    const RUN_ID: &'static str = "toyo.run.easy";
     const COUNT: i64 = 8;
     const INTENT: &'static str = "overwrite an easy program";
-    const HELP: [&'static str; 3] = ["Program to copy, 1 to 8", "Program to replace, 1 to 8", "Program, 1 to 8"];
+    const FROM_HELP: &'static str = "Program to copy, 1 to 8";
+    const TO_HELP: &'static str = "Program to replace, 1 to 8";
+    const SELECT_HELP: &'static str = "Program, 1 to 8";
     const RUN: &'static str = "toyo run easy";
-    const COMMANDS: [Command; 4] = [Command::Cesy, Command::Sesn, Command::Resd, Command::Sesy];
+    const COPY: Command = Command::Cesy;
+    const SELECT: Command = Command::Sesn;
+    const SELECTED: Command = Command::Resd;
+    const START: Command = Command::Sesy;
     const RUN_HELP: Option<&'static str> = Some("Parameter M10 selects easy mode: `armctl toyo param set M10 E`.");
 
     fn field() -> &'static field::Field {

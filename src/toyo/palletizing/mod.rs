@@ -47,12 +47,19 @@ pub struct Numbered;
 impl Kind for Numbered {
     const TYPE_NAME: &'static str = "palletizing program";
     const WORD: &'static str = "palletizing";
-    const IDS: [&'static str; 3] = ["toyo.palletizing.copy", "toyo.palletizing.select", "toyo.run.palletizing"];
+    const COPY_ID: &'static str = "toyo.palletizing.copy";
+    const SELECT_ID: &'static str = "toyo.palletizing.select";
+    const RUN_ID: &'static str = "toyo.run.palletizing";
     const COUNT: i64 = 16;
     const INTENT: &'static str = "overwrite a palletizing program";
-    const HELP: [&'static str; 3] = ["Program to copy, 1 to 16", "Program to replace, 1 to 16", "Program, 1 to 16"];
+    const FROM_HELP: &'static str = "Program to copy, 1 to 16";
+    const TO_HELP: &'static str = "Program to replace, 1 to 16";
+    const SELECT_HELP: &'static str = "Program, 1 to 16";
     const RUN: &'static str = "toyo run palletizing";
-    const COMMANDS: [Command; 4] = [Command::Cppl, Command::Spln, Command::Rpld, Command::Ppst];
+    const COPY: Command = Command::Cppl;
+    const SELECT: Command = Command::Spln;
+    const SELECTED: Command = Command::Rpld;
+    const START: Command = Command::Ppst;
 
     fn field() -> &'static field::Field {
         field()
