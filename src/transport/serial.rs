@@ -201,7 +201,7 @@ fn no_device(error: &serialport::Error, path: &str) -> OpenError {
         Err(error) => error_of_code(error.raw_os_error()).unwrap_or(OpenError::Io(error)),
         // The other program has closed the port in this moment.
         Ok(_) if error.kind == ErrorKind::NoDevice => OpenError::Busy,
-        Ok(_) => OpenError::Io(error.clone().into()),
+        Ok(_) => OpenError::Unsupported(error.description.clone()),
     }
 }
 

@@ -116,14 +116,16 @@ impl Panel {
 
     /// Reads until the console has drawn these texts since the last key.
     fn shows(&mut self, texts: &[&str]) {
+        let start = Instant::now();
         let mut drawn = String::new();
         while !texts.iter().all(|text| drawn.contains(text)) {
-            assert!(self.0.read(), "it never drew {texts:?}, but\n{drawn}");
+            assert!(self.0.read() && start.elapsed() < PATIENCE, "it never drew {texts:?}, but\n{drawn}");
             drawn = String::from_utf8_lossy(&self.0.written).replace("\r\r\n", "");
         }
     }
 
     fn press(&mut self, keys: &str) {
+        self.0.reads_keys();
         self.0.written.clear();
         self.0.press(keys);
     }
@@ -144,6 +146,7 @@ fn top_draws_robots_and_takes_keys() {
     let mut top = Panel::start(wine, &folder, "top --watch 100ms");
     top.shows(&["\x1b[?1049h", "armctl top", "robot1", "robot2", "automatic"]);
     top.press("\x1b[B");
+    top.shows(&["robot2"]);
     top.press("\r");
     top.shows(&["SIGNALS"]);
     top.quit();
