@@ -103,15 +103,15 @@ fn guardian_stops_the_motion_of_a_killed_program() {
     robot.waits_until_it_moves(false);
 }
 
-/// A full-screen program. The console of Wine draws escape sequences as if they were text, so it breaks them at the end
-/// of its line. A real console executes them.
+/// A full-screen program. The console of Wine draws escape sequences as if they were text, so it breaks them and the texts
+/// at the end of its line. The line is long, so that this is rare. A real console executes the sequences.
 struct Panel(Terminal);
 
 impl Panel {
     fn start(wine: &Wine, folder: &TempDir, words: &str) -> Self {
         let mut command = wine.command(folder.path(), words);
         command.env("TERM", "xterm");
-        Self(Terminal::start(command, 100, 30).unwrap())
+        Self(Terminal::start(command, 1000, 30).unwrap())
     }
 
     /// Reads until the console has drawn these texts since the last key.
@@ -164,6 +164,5 @@ fn teach_moves_a_robot_by_keys() {
     let before = x();
     teach.press("\x1b[C");
     until("a step", || x() != before);
-    teach.shows(&["ok"]);
     teach.quit();
 }
