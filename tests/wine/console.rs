@@ -130,11 +130,18 @@ impl Panel {
         self.0.press(keys);
     }
 
-    /// Presses `q`. The program ends, and leaves the normal screen with a cursor.
+    /// Presses `q`, and reads until the program has ended.
     fn quit(mut self) {
         self.press("q");
-        self.shows(&["\x1b[?1049l", "\x1b[?25h"]);
-        assert_eq!(self.0.child.wait().unwrap().code(), Some(0));
+        let start = Instant::now();
+        let ended = loop {
+            match self.0.child.try_wait().unwrap() {
+                Some(ended) => break ended,
+                None => assert!(start.elapsed() < PATIENCE, "it never ended"),
+            }
+            self.0.read();
+        };
+        assert_eq!(ended.code(), Some(0));
     }
 }
 
