@@ -65,10 +65,11 @@ impl Wine {
             std::fs::copy(&program, programs.join(name)).map_err(|error| format!("{}: {error}", program.display()))?;
         }
         let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/wine");
-        let products = [("bcryptprimitives.c", "bcryptprimitives.dll"), ("console_event.c", CONSOLE_EVENT)];
-        for (source, product) in products {
+        let products =
+            [("bcryptprimitives.c", "bcryptprimitives.dll", Some("-shared")), ("console_event.c", CONSOLE_EVENT, None)];
+        for (source, product, kind) in products {
             let mut compiler = Command::new("x86_64-w64-mingw32-gcc");
-            compiler.args(product.ends_with(".dll").then_some("-shared")).arg("-o").arg(programs.join(product));
+            compiler.args(kind).arg("-o").arg(programs.join(product));
             compiler.arg(sources.join(source)).arg("-ladvapi32");
             let result = compiler.status().map_err(|error| format!("x86_64-w64-mingw32-gcc: {error}"))?;
             assert!(result.success(), "{source} does not compile");
@@ -332,7 +333,7 @@ fn says_that_another_program_uses_the_port() {
         }
     };
     let permissions = terminal.metadata().unwrap().permissions();
-    std::fs::set_permissions(&terminal, std::os::unix::fs::PermissionsExt::from_mode(0)).unwrap();
+    std::fs::set_permissions(&terminal, std::os::unix::fs::PermissionsExt::from_mode(0o0)).unwrap();
     is_busy();
     std::fs::set_permissions(&terminal, permissions).unwrap();
     let _holder = serialport::TTYPort::open(&serialport::new(terminal.to_str().unwrap(), 9600)).unwrap();
