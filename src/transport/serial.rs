@@ -195,8 +195,11 @@ fn no_device(_: &serialport::Error, _: &str) -> OpenError {
 fn no_device(error: &serialport::Error, path: &str) -> OpenError {
     use std::os::windows::fs::OpenOptionsExt as _;
 
+    /// `GENERIC_READ | GENERIC_WRITE`.
+    const READ_AND_WRITE: u32 = 0xC000_0000;
+
     let device = if path.starts_with('\\') { path.to_owned() } else { format!(r"\\.\{path}") };
-    let opened = std::fs::OpenOptions::new().read(true).write(true).share_mode(0).open(device);
+    let opened = std::fs::OpenOptions::new().access_mode(READ_AND_WRITE).share_mode(0).open(device);
     match opened {
         Err(error) => error_of_code(error.raw_os_error()).unwrap_or(OpenError::Io(error)),
         // The other program has closed the port in this moment.
