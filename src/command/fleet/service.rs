@@ -2,7 +2,6 @@
 
 use std::cell::RefCell;
 use std::io;
-#[cfg(unix)]
 use std::time::Instant;
 
 use tokio::time::sleep;
