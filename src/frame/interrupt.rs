@@ -63,7 +63,7 @@ const REPORT_TIMEOUT: Duration = Duration::from_secs(5);
 static REQUEST: OnceLock<Result<TerminationRequest, String>> = OnceLock::new();
 
 /// Runs `work` until it ends or a termination request arrives. If calls are nested, the innermost call handles the
-/// request. The outer calls then leave the work [`REPORT_TIMEOUT`] to report what was done.
+/// request. The outer calls then leave the work 5 seconds to report what was done.
 pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failure> {
     let asked = requests()?.subscribe();
     let before = *asked.borrow();
