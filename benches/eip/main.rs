@@ -79,8 +79,14 @@ fn main() -> anyhow::Result<()> {
 /// Measures how much the intervals between images differ from 10 ms. Two bare loops run at the same time for
 /// comparison.
 fn spread(effort: &Effort) -> anyhow::Result<()> {
-    println!("interval between images to the device, RPI 10 ms: deviation                p50       p99       max");
+    println!("{:<62}{:>9} {:>9} {:>9}", "deviation from the RPI of 10 ms, median of the rounds", "p50", "p99", "max");
     let mut ratios = Vec::new();
+    let mut contenders = [
+        "armctl",
+        "bare loop: thread::sleep to a deadline, then send",
+        "bare loop: tokio::time::sleep_until, then send",
+    ]
+    .map(|name| (name, Vec::new()));
     for _ in 0..effort.rounds {
         let runtime = runtime()?;
         let server = Server::start(setup(1), Mirror::default(), AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST), None)?;
@@ -103,11 +109,14 @@ fn spread(effort: &Effort) -> anyhow::Result<()> {
         let tokio = tokio.join().expect("the loop does not panic")?;
         runtime.block_on(connection.close())?;
         let ours = Deviation::of(&sent.lock().expect("nobody panics with it"));
-        let (bare, tokio) = (Deviation::of(&bare), Deviation::of(&tokio));
-        ours.print("armctl");
-        bare.print("bare loop: thread::sleep to a deadline, then send");
-        tokio.print("bare loop: tokio::time::sleep_until, then send");
+        let bare = Deviation::of(&bare);
         ratios.push(ours.p99 / bare.p99);
+        for ((_, rounds), round) in contenders.iter_mut().zip([ours, bare, Deviation::of(&tokio)]) {
+            rounds.push(round);
+        }
+    }
+    for (name, rounds) in &contenders {
+        Deviation::median(rounds).print(name);
     }
     let ratio = median(&mut ratios);
     let verdict = verdict(ratio <= GOAL);
@@ -310,6 +319,12 @@ impl Deviation {
         all.sort_by(f64::total_cmp);
         let at = |percent: usize| all.get(all.len().saturating_sub(1) * percent / 100).copied().unwrap_or(f64::NAN);
         Self { p50: at(50), p99: at(99), max: at(100) }
+    }
+
+    /// The median of each figure over the rounds.
+    fn median(rounds: &[Self]) -> Self {
+        let of = |figure: fn(&Self) -> f64| median(&mut rounds.iter().map(figure).collect::<Vec<_>>());
+        Self { p50: of(|round| round.p50), p99: of(|round| round.p99), max: of(|round| round.max) }
     }
 
     fn print(&self, name: &str) {
