@@ -14,8 +14,10 @@ use crate::local_names::{Target, is_plain_file_name};
 use crate::output::escape;
 use crate::prelude::basics::*;
 use crate::settings::Origin;
+use crate::settings::inventory::named;
 pub use crate::settings::target::MANIFEST;
 use crate::settings::target::MAX_MANIFEST;
+use armctl_controller::names::Name;
 use armctl_controller::text::{hex, unhex};
 
 /// Format name, for programs that find the folder.
@@ -106,6 +108,15 @@ impl About for Value {
 }
 
 impl<C: About> Manifest<C> {
+    /// Names in the settings of the inventory entry. Names that are not valid any more are left out.
+    pub fn names(&self) -> Vec<Name> {
+        let (Some(family), Some(Value::Object(names))) = (C::FAMILY, self.inventory.get("names")) else {
+            return Vec::new();
+        };
+        let name = |(name, address): (&String, &Value)| named(family, name, address.as_str()?).ok();
+        names.iter().filter_map(name).collect()
+    }
+
     /// Manifest of a new backup.
     pub fn new(robot: &Robot, controller: C, scope: Vec<String>) -> Self {
         let now = Timestamp::now();

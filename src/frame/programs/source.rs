@@ -5,6 +5,7 @@ use crate::backup::manifest::{self, About, Manifest};
 use crate::items::ItemError;
 use crate::prelude::basics::*;
 use crate::text_files;
+use armctl_controller::names::Name;
 
 /// A program file: a job, or a sequential program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -28,6 +29,8 @@ pub struct ProgramSet {
     pub is_partial: bool,
     /// Whether the source is a folder without a manifest, so that it is unknown whether the robot has more programs.
     pub is_loose: bool,
+    /// Names that the inventory entry of the robot gives to its objects. A backup has a copy of the entry.
+    pub names: Vec<Name>,
 }
 
 /// Which files of a folder are programs.
@@ -61,7 +64,8 @@ pub fn read_folder<C: About>(folder: &Path, filter: FolderFilter) -> Result<(Pro
 }
 
 fn of_backup<C: About>(folder: &Path, filter: FolderFilter, manifest: &Manifest<C>) -> Result<ProgramSet> {
-    let mut set = ProgramSet { is_partial: !manifest.scope.is_empty(), ..ProgramSet::default() };
+    let mut set =
+        ProgramSet { is_partial: !manifest.scope.is_empty(), names: manifest.names(), ..ProgramSet::default() };
     for entry in manifest.files.iter().filter(|entry| entry.holds == filter.holds) {
         match (&entry.copy, &entry.error) {
             (Some(copy), _) => set.files.push(read_file(&folder.join(&copy.file), entry.name.clone())?),

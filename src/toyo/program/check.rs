@@ -69,7 +69,9 @@ impl Command for Check {
 
     fn run_alone(&self) -> Result<Verdict> {
         if let Some(folder) = &self.from {
-            return self.check(programs_in(folder)?, &Source::Folder(folder.clone()), &[]);
+            let set = programs_in(folder)?;
+            let names = set.names.clone();
+            return self.check(set, &Source::Folder(folder.clone()), &names);
         }
         let read = |path: &PathBuf| {
             let file = files::display_path(path);

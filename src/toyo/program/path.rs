@@ -73,13 +73,18 @@ impl Command for ProgramPath {
 
     fn run_alone(&self) -> Result<PathReport> {
         self.options.check(false)?;
-        let source = match (self.options.from.as_deref(), &self.show.program) {
-            (Some(folder), _) => of_folder(folder, &format!("program-{}", self.task().unwrap_or(1)))?,
-            (None, program) => {
-                let path = PathBuf::from(program.as_deref().unwrap_or("-"));
+        let (folder, show) = (self.options.from.as_deref(), &self.show);
+        let is_file = show.program.is_some() && self.task().is_none();
+        let source = match folder {
+            Some(folder) if !is_file => of_folder(folder, &format!("program-{}", self.task().unwrap_or(1)))?,
+            folder => {
+                let path = PathBuf::from(show.program.as_deref().unwrap_or("-"));
                 let name = files::display_path(&path);
                 let file = ProgramFile { name: name.clone(), file: name, bytes: files::read(&path)? };
-                of_file(file, self.show.points.as_deref(), self.show.params.as_deref())?
+                match folder {
+                    Some(folder) => with_data_of(folder, "program-1", file)?,
+                    None => of_file(file, show.points.as_deref(), show.params.as_deref())?,
+                }
             }
         };
         self.report(&source)
@@ -130,6 +135,11 @@ fn of_folder(folder: &Path, name: &str) -> Result<Source> {
         Failure::usage(format!("{} contains no {name}", folder.display()))
             .hint("type the number of a task with a program")
     })?;
+    with_data_of(folder, name, file)
+}
+
+/// A program with the parameters of a backup, and with the points for the named program of the backup.
+fn with_data_of(folder: &Path, name: &str, file: ProgramFile) -> Result<Source> {
     let parameters = parameters_of(folder);
     let points = points_of(folder, name);
     let has_all_points = points.is_some();

@@ -51,7 +51,9 @@ impl Command for Search {
 
     fn run_alone(&self) -> Result<SearchReport> {
         let folder = self.from.as_deref().ok_or_else(|| Failure::local("internal error: no folder to read"))?;
-        self.lines(programs_in(folder)?, &Names::default())
+        let set = programs_in(folder)?;
+        let names = Names::new(set.names.clone());
+        self.lines(set, &names)
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<SearchReport> {

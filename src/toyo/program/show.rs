@@ -8,7 +8,8 @@ use armctl_frame::robot::program::Program;
 /// Show the current step of the program of the current task.
 #[derive(Debug, Args)]
 pub struct Show {
-    /// Program to draw: a file, or the task of a program, 1 to 4 [default: the current task]
+    /// Program to draw: a file, or the task of a program, 1 to 4 [default: the current task]. With --from, a file moves
+    /// to the points of task 1
     #[arg(value_name = "FILE|NUMBER", requires = "path", value_parser = parse_program)]
     pub program: Option<String>,
     /// CSV file of points from `point dump`, for a program file

@@ -16,7 +16,8 @@ use armctl_frame::text_files;
                   lower case differ without -i. With several conditions, a line must meet all of them. If nothing is \
                   found, the exit code is also 0.\n\n--uses accepts B5, P12, LB0, C1, OUT3, IN#(12), OG#(1), \
                   #10010, UF#(1), and a name of the robot. A signal is also found in its group: OUT3 in OG#(1). In a \
-                  backup, the names come from the name files of the backup (IONAME.DAT, VARNAME.DAT). An indirect \
+                  backup, the names come from the entry of the robot in the inventory, and from the name files of the backup \
+                  (IONAME.DAT, VARNAME.DAT). An indirect \
                   variable or signal, such as B[I000], is found only by a text search.\n\nWithout --from, armctl reads \
                   every job of the controller first."
 )]
@@ -37,8 +38,10 @@ impl Command for Search {
     }
 
     fn run_alone(&self) -> Result<Matches> {
-        let (folder, set, encoding) = self.source.folder()?;
-        self.find(set, encoding, &names_in(folder, encoding))
+        let (folder, mut set, encoding) = self.source.folder()?;
+        set.names.extend(names_in(folder, encoding));
+        let names = Names::new(std::mem::take(&mut set.names));
+        self.find(set, encoding, &names)
     }
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Matches> {
@@ -80,10 +83,10 @@ impl Search {
 }
 
 /// Names in the name files of a backup. A file that is missing or damaged has no names.
-fn names_in(folder: &Path, encoding: Encoding) -> Names {
+fn names_in(folder: &Path, encoding: Encoding) -> Vec<Name> {
     let names = |file: &str| -> Vec<Name> {
         let bytes = text_files::read(&folder.join(file)).unwrap_or_default();
         read(file, &bytes, encoding).map(|found| found.names).unwrap_or_default()
     };
-    Names::new(FILES.into_iter().flat_map(names).collect())
+    FILES.into_iter().flat_map(names).collect()
 }
