@@ -13,7 +13,7 @@ use crate::prelude::*;
 use armctl_controller::yerc::{read_only_filter, simulator, status};
 use armctl_frame::backup::family_backup::Backups;
 use armctl_frame::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
-use armctl_frame::face::{Declaration, HeldLink, Layer, OverviewReport, Panel, Traffic, Work};
+use armctl_frame::face::{Declaration, HeldLink, Layer, OverviewReport, Panel, Traffic};
 use armctl_frame::robot::alarm::Alarm;
 use armctl_transport::session::host::Guard;
 
@@ -40,16 +40,6 @@ impl Declaration for Yerc {
     const PANEL: Panel = teach_panel::PANEL;
     const GUARD: Guard =
         Guard { is_harmless_data: read_only_filter::only_reads_or_stops, is_harmless_image: |_, _| false };
-    const DISSECTOR: fn() -> String = super::wireshark::dissector;
-    const TWIN: fn(&Path) -> Result<Self::Start> = super::file::twin::start;
-    const ALARMS: fn(&mut Link) -> Work<'_, Vec<Alarm>> =
-        |link| async { alarm::present(link, &mut true, alarm::SLOTS).await }.boxed_local();
-    const TRAFFIC: fn(&Link) -> Traffic = Link::traffic;
-    const OVERVIEW: fn(&mut Link) -> Work<'_, OverviewReport> = |link| overview::overview(link).boxed_local();
-    const CHECK: for<'a> fn(&'a Robot, Access, &'a Screen) -> Work<'a, Vec<Layer>> =
-        |robot, access, screen| check::check(robot, access, screen).boxed_local();
-    const OPEN_SESSION_LINK: for<'a> fn(&'a Robot, &'a Access, &'a Screen) -> Work<'a, HeldLink> =
-        |robot, access, screen| connect::open_session_link(robot, access, screen).boxed_local();
 
     fn urls() -> Vec<(String, &'static str)> {
         vec![("udp://".to_owned(), "yerc: name or address of the controller")]
@@ -62,6 +52,34 @@ impl Declaration for Yerc {
 
     fn stop_command() -> Self::Stop {
         Hold::on()
+    }
+
+    fn dissector() -> String {
+        super::wireshark::dissector()
+    }
+
+    fn twin(folder: &Path) -> Result<Self::Start> {
+        super::file::twin::start(folder)
+    }
+
+    fn traffic(link: &Link) -> Traffic {
+        link.traffic()
+    }
+
+    async fn alarms(link: &mut Link) -> Result<Vec<Alarm>> {
+        alarm::present(link, &mut true, alarm::SLOTS).await
+    }
+
+    async fn overview(link: &mut Link) -> Result<OverviewReport> {
+        overview::overview(link).await
+    }
+
+    async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>> {
+        check::check(robot, access, screen).await
+    }
+
+    async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink> {
+        connect::open_session_link(robot, access, screen).await
     }
 }
 

@@ -17,7 +17,7 @@ use armctl_controller::yrcx::{alarm, read_only_filter, simulator};
 use armctl_frame::FamilyArguments;
 use armctl_frame::backup::family_backup::Backups;
 use armctl_frame::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
-use armctl_frame::face::{Declaration, HeldLink, Layer, OverviewReport, Panel, Traffic, Work};
+use armctl_frame::face::{Declaration, HeldLink, Layer, OverviewReport, Panel, Traffic};
 use armctl_frame::robot::alarm::Alarm;
 use armctl_frame::settings::target::BUSES;
 use armctl_transport::session::host::Guard;
@@ -46,15 +46,6 @@ impl Declaration for Yrcx {
     const GUARD: Guard = Guard { is_harmless_data: |_| false, is_harmless_image: read_only_filter::only_stops };
     const SESSION_RECORDS: bool = true;
     const SESSION_COMMANDS: bool = true;
-    const DISSECTOR: fn() -> String = super::wireshark::dissector;
-    const TWIN: fn(&Path) -> Result<Self::Start> = super::backup::twin::start;
-    const ALARMS: fn(&mut Link) -> Work<'_, Vec<Alarm>> = |link| overview::alarms(link).boxed_local();
-    const TRAFFIC: fn(&Link) -> Traffic = Link::traffic;
-    const OVERVIEW: fn(&mut Link) -> Work<'_, OverviewReport> = |link| overview::overview(link).boxed_local();
-    const CHECK: for<'a> fn(&'a Robot, Access, &'a Screen) -> Work<'a, Vec<Layer>> =
-        |robot, access, screen| check::check(robot, access, screen).boxed_local();
-    const OPEN_SESSION_LINK: for<'a> fn(&'a Robot, &'a Access, &'a Screen) -> Work<'a, HeldLink> =
-        |robot, access, screen| session_link::open_session_link(robot, access, screen).boxed_local();
 
     fn urls() -> Vec<(String, &'static str)> {
         BUSES.iter().map(|bus| (format!("{}://", bus.name), bus.about)).collect()
@@ -74,6 +65,34 @@ impl Declaration for Yrcx {
 
     fn stop_command() -> Self::Stop {
         Stop {}
+    }
+
+    fn dissector() -> String {
+        super::wireshark::dissector()
+    }
+
+    fn twin(folder: &Path) -> Result<Self::Start> {
+        super::backup::twin::start(folder)
+    }
+
+    fn traffic(link: &Link) -> Traffic {
+        link.traffic()
+    }
+
+    async fn alarms(link: &mut Link) -> Result<Vec<Alarm>> {
+        overview::alarms(link).await
+    }
+
+    async fn overview(link: &mut Link) -> Result<OverviewReport> {
+        overview::overview(link).await
+    }
+
+    async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>> {
+        check::check(robot, access, screen).await
+    }
+
+    async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink> {
+        session_link::open_session_link(robot, access, screen).await
     }
 }
 

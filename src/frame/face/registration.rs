@@ -26,6 +26,7 @@ use armctl_controller::simulator::recording::Replayable;
 use armctl_transport::session::host::Guard;
 
 /// A family, declared in its `face.rs`.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Declaration: Backups {
     /// Commands after the name of the family.
     type Commands: CommandSet + Subcommand;
@@ -72,25 +73,14 @@ pub trait Declaration: Backups {
     const SESSION_RECORDS: bool = false;
     /// See [`Face::session_commands`].
     const SESSION_COMMANDS: bool = false;
-    /// See [`Face::dissector`].
-    const DISSECTOR: fn() -> String;
-    /// Start state of the simulator with the data of a backup.
-    const TWIN: fn(&Path) -> Result<Self::Start>;
-    /// Active alarms, the latest first, as far as they can be read.
-    const ALARMS: fn(&mut Self::Link) -> Work<'_, Vec<Alarm>>;
-    /// Traffic counted on a link so far.
-    const TRAFFIC: fn(&Self::Link) -> Traffic;
-    /// Summary for `status`.
-    const OVERVIEW: fn(&mut Self::Link) -> Work<'_, OverviewReport>;
-    /// Layers of `robots check`.
-    const CHECK: for<'a> fn(&'a Robot, Access, &'a Screen) -> Work<'a, Vec<Layer>>;
-    /// Opens a link for a session.
-    const OPEN_SESSION_LINK: for<'a> fn(&'a Robot, &'a Access, &'a Screen) -> Work<'a, HeldLink>;
-
     /// See [`Face::urls`].
     fn urls() -> Vec<(String, &'static str)>;
     /// See [`Face::codes`].
     fn codes() -> Vec<(String, String)>;
+    /// See [`Face::dissector`].
+    fn dissector() -> String;
+    /// Start state of the simulator with the data of a backup.
+    fn twin(folder: &Path) -> Result<Self::Start>;
     /// See [`Face::topics`].
     fn topics() -> Vec<(&'static str, &'static str, String)> {
         Vec::new()
@@ -106,6 +96,16 @@ pub trait Declaration: Backups {
     }
     /// Stop command, equivalent to the words of [`STOP`](connection::Family::STOP).
     fn stop_command() -> Self::Stop;
+    /// Active alarms, the latest first, as far as they can be read.
+    async fn alarms(link: &mut Self::Link) -> Result<Vec<Alarm>>;
+    /// Traffic counted on a link so far.
+    fn traffic(link: &Self::Link) -> Traffic;
+    /// Summary for `status`.
+    async fn overview(link: &mut Self::Link) -> Result<OverviewReport>;
+    /// Layers of `robots check`.
+    async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>>;
+    /// Opens a link for a session.
+    async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink>;
 }
 
 /// Poller that reads a robot repeatedly.
@@ -148,24 +148,24 @@ impl Face {
             },
             schemas: F::Commands::schemas,
             serve: |name, arguments| serve::<F::Serve>(name, arguments).boxed_local(),
-            twin: |folder| Ok(Box::new((F::TWIN)(folder)?)),
-            dissector: F::DISSECTOR,
+            twin: |folder| Ok(Box::new(F::twin(folder)?)),
+            dissector: F::dissector,
             tool: |kind| match kind {
                 ToolKind::Decode => Tool::decode::<F::Decode>(),
                 ToolKind::Explain => Tool::explain::<F>(),
                 ToolKind::Simulate => Tool::simulate::<F::Serve>(),
             },
             driver: connection::driver::<F>(),
-            overview: |connection| async move { (F::OVERVIEW)(connection::link::<F>(connection)?).await }.boxed_local(),
-            alarms: |connection| async move { (F::ALARMS)(connection::link::<F>(connection)?).await }.boxed_local(),
+            overview: |connection| async move { F::overview(connection::link::<F>(connection)?).await }.boxed_local(),
+            alarms: |connection| async move { F::alarms(connection::link::<F>(connection)?).await }.boxed_local(),
             shared: shared_commands::command::<F>,
             panel: F::PANEL,
-            check: F::CHECK,
+            check: |robot, access, screen| F::check(robot, access, screen).boxed_local(),
             watch: |robot, access, screen| {
                 let poller = F::Poller::open(robot, access, screen);
                 async move { Ok(Box::new(poller.await?) as Box<dyn Watch>) }.boxed_local()
             },
-            open_session_link: F::OPEN_SESSION_LINK,
+            open_session_link: |robot, access, screen| F::open_session_link(robot, access, screen).boxed_local(),
             guard: F::GUARD,
             session_records: F::SESSION_RECORDS,
             session_commands: F::SESSION_COMMANDS,
@@ -210,7 +210,7 @@ impl<E: Poller> Watch for E {
     }
 
     fn traffic(&mut self) -> Traffic {
-        (E::Family::TRAFFIC)(self.link())
+        E::Family::traffic(self.link())
     }
 
     fn close(self: Box<Self>, screen: &Screen) -> Work<'_, ()> {
