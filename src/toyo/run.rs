@@ -3,9 +3,9 @@
 use std::marker::PhantomData;
 
 use super::number_arguments::saturated_byte;
+use super::numbered_programs::NumberedProgram;
 use super::point::{parse_point, table as point_table};
 use super::position::{Coordinates, UNIT, titled};
-use super::programs::Kind as ProgramKind;
 use super::wait::{AcceptedWork, End, Work, step};
 use super::{easy, palletizing};
 use crate::prelude::*;
@@ -74,7 +74,7 @@ impl Command for Sequential {
 /// Start palletizing or the easy program, or continue after a stop (TO 2-7).
 #[derive(Debug, Args)]
 #[command(after_help = K::RUN_HELP)]
-pub struct Numbered<K: ProgramKind> {
+pub struct Numbered<K: NumberedProgram> {
     /// Program to select first [default: the current program]
     #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=K::COUNT))]
     number: Option<i32>,
@@ -89,7 +89,7 @@ pub struct Numbered<K: ProgramKind> {
     of: PhantomData<K>,
 }
 
-impl<K: ProgramKind> Command for Numbered<K> {
+impl<K: NumberedProgram> Command for Numbered<K> {
     type Family = Toyo;
     type Report = RunReport;
     const ID: &'static str = K::RUN_ID;

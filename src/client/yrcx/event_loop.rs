@@ -9,14 +9,13 @@ use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::register::general;
 use armctl_controller::yrcx::sequence::{self, Sequence};
 use armctl_controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome, Policy, Silence};
-use armctl_controller::yrcx::signal::{input, output};
+use armctl_controller::yrcx::signal::{input, output, resting};
 use armctl_controller::yrcx::table::DurationClass;
-use armctl_transport::image::{Event as LinkEvent, LinkError};
+use armctl_transport::image::{Event as LinkEvent, LinkError, image_after_loss};
 use armctl_transport::session::client::SessionBusy;
 use tokio::time::Instant;
 
 use super::error::Error;
-use super::session_rules::after_loss;
 use super::{Client, Event, Reply, Transport};
 
 /// Poll interval of a session without a deadline.
@@ -282,7 +281,8 @@ impl Client {
                 if self.is_shared {
                     self.adopt_session_output();
                 } else {
-                    self.output.next = after_loss(&self.output.next);
+                    let rest = image_after_loss(&resting().to_link(self.size), &self.output.next.to_link(self.size));
+                    self.output.next = Image::from_link(&rest).unwrap_or_else(resting);
                 }
                 let stop = self.is_owner.then(|| input::STOP.is_on(&self.output.next));
                 self.watcher.event(Event::Reopened { stop });

@@ -2,7 +2,7 @@
 
 use armctl_controller::yrcx::answer::Status;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
-use armctl_controller::yrcx::signal::{input, output, resting};
+use armctl_controller::yrcx::signal::{output, resting};
 use armctl_transport::image::{Cause, ImageLink, LinkError};
 use armctl_transport::session::host::shared_link::{Images, Rules, SharedLink};
 use tokio::time::Instant;
@@ -23,7 +23,6 @@ pub async fn open_session_link(link: ImageLink, commands: bool, until: Instant) 
         exclusive: if has_commands { 2 * COMMAND_WORDS } else { 0 },
         command: if has_commands { 2 } else { 0 },
         resting: resting().to_link(size),
-        after_loss: |before| after_loss(&image(before)).to_link(before.len()),
         is_moving: |_, seen| {
             let seen = image(seen);
             Status::from_word(seen.0[0]) == Status::Running || output::PROGRAM_RUNNING.is_on(&seen)
@@ -36,16 +35,6 @@ pub async fn open_session_link(link: ImageLink, commands: bool, until: Instant) 
     // An error of the close is ignored: the missing image is the more useful error.
     let _ = SharedLink::Images(images).close().await;
     Err(Error::Silent)
-}
-
-/// Returns the image to send after the link was lost. It is the resting image, except that an emergency-stop or stop
-/// input that was off stays off.
-pub(super) fn after_loss(before: &Image) -> Image {
-    let mut after = resting();
-    for signal in [input::EMERGENCY_STOP, input::STOP] {
-        signal.set(&mut after, signal.is_on(before));
-    }
-    after
 }
 
 fn image(bytes: &[u8]) -> Image {

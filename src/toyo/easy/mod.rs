@@ -4,7 +4,7 @@ mod progress;
 
 use super::eeprom::Cell;
 use super::eeprom_tables::{self, Rows, WRITING};
-use super::programs::{Copy, Kind, Select};
+use super::numbered_programs::{Copy, NumberedProgram, Select};
 use crate::prelude::*;
 use armctl_controller::toyo::field;
 use armctl_controller::toyo::layout::Layout;
@@ -37,7 +37,7 @@ commands! {
 #[derive(Debug)]
 pub struct Numbered;
 
-impl Kind for Numbered {
+impl NumberedProgram for Numbered {
     const TYPE_NAME: &'static str = "easy program";
     const WORD: &'static str = "easy";
     const COPY_ID: &'static str = "toyo.easy.copy";

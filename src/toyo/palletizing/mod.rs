@@ -9,7 +9,7 @@ use super::eeprom_tables::{EepromRow, Listed, is_zero, unlisted};
 use super::field_values::{self, NamedValue};
 use super::item_reads::read_each;
 use super::number_arguments;
-use super::programs::{Copy, Kind, Select};
+use super::numbered_programs::{Copy, NumberedProgram, Select};
 use crate::prelude::*;
 use armctl_controller::toyo::field;
 use armctl_controller::toyo::layout::Layout;
@@ -44,7 +44,7 @@ commands! {
 #[derive(Debug)]
 pub struct Numbered;
 
-impl Kind for Numbered {
+impl NumberedProgram for Numbered {
     const TYPE_NAME: &'static str = "palletizing program";
     const WORD: &'static str = "palletizing";
     const COPY_ID: &'static str = "toyo.palletizing.copy";

@@ -12,7 +12,7 @@ use tokio::sync::Mutex;
 use tokio::time::{Instant, sleep_until, timeout_at};
 
 use crate::BACKOFF;
-use crate::image::{Event, ImageLink};
+use crate::image::{Event, ImageLink, image_after_loss};
 use crate::session::wire::{self, Change};
 use crate::sim::{InProcess, Peer};
 use crate::stream::Stream;
@@ -166,10 +166,8 @@ pub struct Rules {
     pub exclusive: usize,
     /// Size of the command part in bytes. This part is at the start of the image, and is 0 while no command is active.
     pub command: usize,
-    /// Image that is sent first.
+    /// Image that is sent first. After a loss, [`image_after_loss`] returns the image.
     pub resting: Vec<u8>,
-    /// Function that returns the image to send after a loss. Its argument is the image from before the loss.
-    pub after_loss: fn(&[u8]) -> Vec<u8>,
     /// Function that returns whether the robot is moving. Its arguments are the output image and the input image.
     pub is_moving: fn(&[u8], &[u8]) -> bool,
 }
@@ -226,7 +224,7 @@ impl Images {
                 }
                 Event::Reopened => {
                     self.down = None;
-                    self.shown = (self.rules.after_loss)(&self.shown);
+                    self.shown = image_after_loss(&self.rules.resting, &self.shown);
                     self.set_output();
                     return LinkEvent::Reopened;
                 }

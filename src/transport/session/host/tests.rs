@@ -62,7 +62,6 @@ fn images() -> SharedLink {
         exclusive: 2,
         command: 2,
         resting: vec![0, 0, 0x41],
-        after_loss: <[u8]>::to_vec,
         is_moving: |_, seen| seen.first().is_some_and(|byte| *byte != 0),
     };
     SharedLink::Images(Images::new(ImageLink::in_process(Box::new(Mirror::default())), rules).unwrap())

@@ -9,7 +9,7 @@ use crate::prelude::*;
 use armctl_controller::toyo::field::Field;
 
 /// A type of program that has numbers.
-pub trait Kind: Debug + 'static {
+pub trait NumberedProgram: Debug + 'static {
     /// Name of the type, such as `easy program`.
     const TYPE_NAME: &'static str;
     /// Word of the type in `toyo run`.
@@ -51,7 +51,7 @@ pub trait Kind: Debug + 'static {
 
 /// Copy a program to another number, if the two programs differ.
 #[derive(Debug, Args)]
-pub struct Copy<K: Kind> {
+pub struct Copy<K: NumberedProgram> {
     #[arg(value_name = "FROM", help = K::FROM_HELP, value_parser = |text: &str| number(K::field(), text))]
     from: i32,
     #[arg(value_name = "TO", help = K::TO_HELP, value_parser = |text: &str| number(K::field(), text))]
@@ -62,14 +62,14 @@ pub struct Copy<K: Kind> {
 
 /// Select the program that `toyo run` starts.
 #[derive(Debug, Args)]
-pub struct Select<K: Kind> {
+pub struct Select<K: NumberedProgram> {
     #[arg(value_name = "PROGRAM", help = K::SELECT_HELP, value_parser = |text: &str| number(K::field(), text))]
     program: i32,
     #[arg(skip)]
     of: PhantomData<K>,
 }
 
-impl<K: Kind> Command for Copy<K> {
+impl<K: NumberedProgram> Command for Copy<K> {
     type Family = Toyo;
     type Report = Copied;
     const ID: &'static str = K::COPY_ID;
@@ -86,7 +86,7 @@ impl<K: Kind> Command for Copy<K> {
     }
 }
 
-impl<K: Kind> Command for Select<K> {
+impl<K: NumberedProgram> Command for Select<K> {
     type Family = Toyo;
     type Report = SetReport;
     const ID: &'static str = K::SELECT_ID;
