@@ -25,7 +25,7 @@ pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec
     if held && !fieldbus.has_room {
         layers.ok(first, "an open session uses the connection, so other clients cannot read");
     } else {
-        match Yrcx::connect(robot, access.clone(), screen).await {
+        match Box::pin(Yrcx::connect(robot, access.clone(), screen)).await {
             Err(failure) => layers.fail(first, &failure),
             Ok(mut link) => {
                 image = link.any_board()?.check(&mut layers).await;
