@@ -7,12 +7,9 @@ use armctl_frame::Driver;
 use armctl_frame::face::Face;
 use armctl_frame::settings::Robot;
 use armctl_frame::settings::target::Family;
-use armctl_toyo::link::Toyo;
-use armctl_yerc::link::Yerc;
-use armctl_yrcx::link::Yrcx;
 
 /// All families, in the order of the help texts.
-pub static FAMILIES: [&Face; 3] = [&Face::of::<Yerc>(), &Face::of::<Yrcx>(), &Face::of::<Toyo>()];
+pub static FAMILIES: [&Face; 3] = [&armctl_yerc::face::FACE, &armctl_yrcx::face::FACE, &armctl_toyo::face::FACE];
 
 /// Returns the family with this name.
 ///

@@ -7,10 +7,10 @@ use serde_json::Value;
 
 use super::connect;
 use super::simulated::Simulated;
+use crate::face::FACE;
 use crate::prelude::*;
 use armctl_client::toyo::{Client, FENCE};
 use armctl_controller::toyo::simulator::Start;
-use armctl_frame::face::Face;
 use armctl_frame::gate::{Gate, Grant, Intent};
 use armctl_frame::output::{ColorChoice, Format};
 use armctl_frame::testing::{self, QUIET, context, frames, planned, unlimited_access};
@@ -21,7 +21,7 @@ use armctl_transport::stream::Stream;
 
 /// Error message of the command line parser.
 pub(super) fn objection(words: &[&str]) -> String {
-    testing::parse(FACE, "sim:", words).err().expect("the parser objects").to_string()
+    testing::parse(&FACE, "sim:", words).err().expect("the parser objects").to_string()
 }
 
 /// Input of the gate for a command line: intent and command name.
@@ -277,12 +277,9 @@ fn runtime() -> tokio::runtime::Runtime {
     tokio::runtime::Builder::new_current_thread().enable_time().start_paused(true).build().expect("a runtime")
 }
 
-/// The family.
-const FACE: &Face = &Face::of::<Toyo>();
-
 /// Robot and command of a command line.
 fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>)> {
-    testing::resolve(FACE, target, words)
+    testing::resolve(&FACE, target, words)
 }
 
 /// A screen without output.

@@ -13,9 +13,12 @@ use crate::prelude::*;
 use armctl_controller::yerc::{read_only_filter, simulator, status};
 use armctl_frame::backup::family_backup::Backups;
 use armctl_frame::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
-use armctl_frame::face::{Declaration, HeldLink, Layer, OverviewReport, Panel, Traffic};
+use armctl_frame::face::{Declaration, Face, HeldLink, Layer, OverviewReport, Panel, Traffic};
 use armctl_frame::robot::alarm::Alarm;
 use armctl_transport::session::host::Guard;
+
+/// The family for the rest of the program. It is a static, so this crate compiles the code of its commands.
+pub static FACE: Face = Face::of::<Yerc>();
 
 impl Declaration for Yerc {
     type Commands = Commands;

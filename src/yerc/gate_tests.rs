@@ -1,12 +1,11 @@
 //! Tests of every command line of the family at the gate: its risk, and the risk in a dry run.
 
 use super::testing::{Bench, DX200, dry_run, resolve_robot};
-use crate::link::Yerc;
+use crate::face::FACE;
 use crate::prelude::basics::*;
 use armctl_controller::Risk::{self, Destroy, Motion, Read, Write};
 use armctl_controller::text::unhex;
 use armctl_controller::yerc::wire::RequestFrame;
-use armctl_frame::face::Face;
 use armctl_frame::testing;
 
 /// Commands that send no frames.
@@ -119,7 +118,7 @@ fn every_command_passes_the_gate_according_to_its_risk() {
         assert_eq!(shown, expected, "{line}: {frames:?}");
     }
     let mut leaves = BTreeSet::new();
-    collect(&testing::family(&Face::of::<Yerc>()), "yerc", &mut leaves);
+    collect(&testing::family(&FACE), "yerc", &mut leaves);
     // `job show` with --path has its own report.
     leaves.insert("yerc.job.path".to_owned());
     assert_eq!(tested, leaves);

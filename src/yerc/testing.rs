@@ -1,8 +1,8 @@
 //! Test support: the frames that a command line sends, and commands that run on a simulator in virtual time.
 
+use crate::face::FACE;
 use crate::prelude::*;
 use armctl_controller::text::hex;
-use armctl_frame::face::Face;
 use armctl_frame::output::{ColorChoice, Format};
 use armctl_frame::settings_report::IF_DIFFERENT;
 use armctl_frame::testing;
@@ -15,7 +15,7 @@ pub(super) const FS100: &str = "udp://127.0.0.1?model=fs100";
 /// Error of the command-line parser.
 pub(super) fn error_text(words: &str) -> String {
     let words: Vec<&str> = words.split_ascii_whitespace().collect();
-    testing::parse(FACE, DX200, &words).err().expect("the parser objects").to_string()
+    testing::parse(&FACE, DX200, &words).err().expect("the parser objects").to_string()
 }
 
 /// Text of the question before the command runs, without "This will".
@@ -117,12 +117,9 @@ impl Bench {
     }
 }
 
-/// The family.
-const FACE: &Face = &Face::of::<Yerc>();
-
 /// Robot and command of a command line.
 pub(super) fn resolve_robot(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>)> {
-    testing::resolve(FACE, target, words)
+    testing::resolve(&FACE, target, words)
 }
 
 /// Screen without output.

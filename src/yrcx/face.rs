@@ -17,10 +17,13 @@ use armctl_controller::yrcx::{alarm, read_only_filter, simulator};
 use armctl_frame::FamilyArguments;
 use armctl_frame::backup::family_backup::Backups;
 use armctl_frame::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
-use armctl_frame::face::{Declaration, HeldLink, Layer, OverviewReport, Panel, Traffic};
+use armctl_frame::face::{Declaration, Face, HeldLink, Layer, OverviewReport, Panel, Traffic};
 use armctl_frame::robot::alarm::Alarm;
 use armctl_frame::settings::target::BUSES;
 use armctl_transport::session::host::Guard;
+
+/// The family for the rest of the program. It is a static, so this crate compiles the code of its commands.
+pub static FACE: Face = Face::of::<Yrcx>();
 
 impl Declaration for Yrcx {
     type Commands = Commands;

@@ -5,10 +5,10 @@ use std::collections::VecDeque;
 use std::fmt::Debug;
 
 use super::unit_argument::Unit;
+use crate::face::FACE;
 use crate::prelude::*;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Words};
 use armctl_controller::yrcx::table::Row;
-use armctl_frame::face::Face;
 use armctl_frame::gate::Grant;
 use armctl_frame::output::{ColorChoice, Format};
 use armctl_frame::testing;
@@ -92,7 +92,7 @@ pub(super) fn read_in_turn(ids: &[&str], line: &[&str]) -> Value {
 
 /// Error of the command-line parser.
 pub(super) fn objection(words: &[&str]) -> String {
-    testing::parse(FACE, "sim:", words).err().expect("the parser objects").to_string()
+    testing::parse(&FACE, "sim:", words).err().expect("the parser objects").to_string()
 }
 
 /// Question before the command, without "This will".
@@ -418,12 +418,9 @@ impl ImagePeer for Scripted {
     }
 }
 
-/// The family.
-const FACE: &Face = &Face::of::<Yrcx>();
-
 /// Robot and command of a line.
 pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>)> {
-    testing::resolve(FACE, target, words)
+    testing::resolve(&FACE, target, words)
 }
 
 /// Returns the robot number that `--unit` selects.
@@ -433,7 +430,7 @@ fn unit(words: &[&str]) -> u8 {
 
 /// Family arguments before the command.
 fn own(words: &[&str]) -> FamilyArguments {
-    match testing::parse(FACE, DRY, words) {
+    match testing::parse(&FACE, DRY, words) {
         Ok((_, typed)) => typed.arguments,
         _ => FamilyArguments::default(),
     }
