@@ -342,21 +342,26 @@ pub fn neutralize_formula(text: &str) -> Cow<'_, str> {
     if shown.starts_with(['=', '+', '-', '@']) && !is_plain() { format!("'{shown}").into() } else { shown }
 }
 
-/// Appends a line of fields. Fields are quoted if necessary.
+/// Appends a line of fields.
 pub fn line<'a>(out: &mut String, fields: impl Iterator<Item = &'a str>) {
     for (index, field) in fields.enumerate() {
         if index > 0 {
             out.push(',');
         }
-        if field.contains([',', '"', '\n', '\r']) {
-            out.push('"');
-            out.push_str(&field.replace('"', "\"\""));
-            out.push('"');
-        } else {
-            out.push_str(field);
-        }
+        push_field(out, field);
     }
     out.push('\n');
+}
+
+/// Appends a field. It is quoted if necessary.
+fn push_field(out: &mut String, field: &str) {
+    if field.bytes().any(|byte| matches!(byte, b',' | b'"' | b'\n' | b'\r')) {
+        out.push('"');
+        out.push_str(&field.replace('"', "\"\""));
+        out.push('"');
+    } else {
+        out.push_str(field);
+    }
 }
 
 #[cfg(test)]

@@ -111,15 +111,17 @@ pub struct Summary {
 
 /// Reads a file in pieces and delivers its messages. The bytes of a TCP stream are delivered in order. Bytes of
 /// segments that arrived out of order can therefore be delivered after later messages of other streams.
-pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summary, OpenError> {
-    read_while(file, |message| {
+pub fn read(mut file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summary, OpenError> {
+    read_while(&mut file, &mut |message| {
         each(message);
         true
     })
 }
 
 /// Reads a file like [`read`], but only as long as `each` returns true. The summary describes the part that was read.
-pub fn read_while(file: impl Read, mut each: impl FnMut(&Message<'_>) -> bool) -> Result<Summary, OpenError> {
+///
+/// The arguments are not generic, so that this is compiled once, with the optimization of this crate.
+pub fn read_while(file: &mut dyn Read, each: &mut dyn FnMut(&Message<'_>) -> bool) -> Result<Summary, OpenError> {
     let is_wanted = Cell::new(true);
     let mut each = |message: &Message<'_>| is_wanted.set(is_wanted.get() && each(message));
     let mut summary = Summary::default();

@@ -17,7 +17,7 @@ use armctl_transport::tap::Direction;
 pub const MAX_STORED: usize = 1 << 16;
 
 /// Decoder of one fieldbus.
-pub trait BusDecoder: fmt::Debug {
+pub trait BusDecoder: fmt::Debug + Send {
     /// Decodes a packet, if it belongs to this fieldbus.
     fn take(&mut self, message: &Message<'_>, images: &mut Images);
 

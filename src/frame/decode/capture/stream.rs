@@ -8,7 +8,6 @@ use serde::ser::{Serialize, SerializeSeq as _, Serializer};
 
 use super::report::{COLUMNS, Capture, Extremes, Link, Links, MESSAGE, Problems, Row, message_cell};
 use super::{CaptureDecoder, DecodedCapture, DecodedMessage, Detail, ReportEnvelope, Source};
-use crate::output::Format;
 use crate::output::busy_work::register;
 use crate::output::csv::Sheet;
 use crate::output::render::{self, Layout};
@@ -19,9 +18,11 @@ use armctl_transport::capture::Summary;
 
 /// Number of rows per layout batch.
 const ROWS_PER_BATCH: usize = 1000;
+/// Number of bytes of CSV per write.
+const CSV_LIMIT: usize = 64 << 10;
 
 /// Prints a file while it is read.
-pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
+pub fn print<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder>(
     run: &Run,
     id: &str,
     source: &Source<'_, O>,
@@ -31,12 +32,9 @@ pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
     let mut problems = Problems::default();
     let mut layout = Layout::new(&COLUMNS);
     let mut extremes = Extremes::default();
-    let is_table = run.is_for_people() && run.screen.format != Format::Csv;
-    let (first_detail, detail) = match run.screen.format {
-        _ if is_table => (Detail::Text, Detail::Text),
-        Format::Csv => (Detail::Problem, Detail::Raw),
-        _ => (Detail::Problem, Detail::Fields),
-    };
+    let is_table = run.is_for_people();
+    let (first_detail, detail) =
+        if is_table { (Detail::Text, Detail::Text) } else { (Detail::Problem, Detail::Fields) };
     let summary = {
         let _busy = register();
         source.decode(&mut decoder, first_detail, |message| {
@@ -64,13 +62,36 @@ pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
         run.screen.json_as_it_comes(&ReportEnvelope::new(run, id, data, failure.as_ref()))?;
         return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, is_reported: true }));
     }
-    if run.screen.format == Format::Csv {
-        second_pass.csv(run, decoder.restart())?;
-        about.notes.iter().for_each(|note| run.screen.note(note));
-    } else {
-        second_pass.rows_for_people(run, &about, layout, decoder.restart())?;
-    }
+    second_pass.rows_for_people(run, &about, layout, decoder.restart())?;
     failure.map_or(Ok(()), |failure| Err(failure.into()))
+}
+
+/// Prints the messages as CSV, without their lists of fields, in one pass.
+pub fn csv<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder>(
+    run: &Run,
+    source: &Source<'_, O>,
+    mut decoder: D,
+) -> Result<(), RunError> {
+    let _busy = register();
+    let first = source.first_time()?;
+    let sheet = Sheet::from_schema(&schema_of::<Capture<D::Field>>().to_value(), RowsOf::List("messages"));
+    let mut text = sheet.header(&[]);
+    let (mut links, mut problems, mut written) = (Links::default(), Problems::default(), Ok(()));
+    let summary = source.decode(&mut decoder, Detail::Raw, |message| {
+        problems.add(message.number, message.problem.as_ref());
+        links.row(message, first).push_csv(&mut text);
+        if text.len() >= CSV_LIMIT {
+            written = run.screen.data(&text);
+            text.clear();
+        }
+        written.is_ok()
+    })?;
+    written?;
+    run.screen.data(&text)?;
+    let DecodedCapture { packets, notes, .. } = std::mem::take(decoder.decoded());
+    let about = Capture { problems, ..source.about::<D::Field>(&summary, packets, notes) };
+    about.notes.iter().for_each(|note| run.screen.note(note));
+    about.failure().map_or(Ok(()), |failure| Err(failure.into()))
 }
 
 /// Second pass through the file, up to the number of messages of the first pass.
@@ -81,7 +102,7 @@ struct SecondPass<'a, 'b, O> {
     all: u64,
 }
 
-impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
+impl<R: Read, O: Fn() -> io::Result<R> + Sync> SecondPass<'_, '_, O> {
     /// Passes on every message until the callback ends.
     fn rows<D: CaptureDecoder>(&self, mut decoder: D, mut each: impl FnMut(Row<D::Field>) -> bool) -> Result<()> {
         let mut links = Links::default();
@@ -130,24 +151,6 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
         }
         screen.data(&format!("\n{}", text(about.notes.join("\n"))))
     }
-
-    /// Messages as CSV, without their lists of fields.
-    fn csv<D: CaptureDecoder>(&self, run: &Run, decoder: D) -> Result<()> {
-        let sheet = Sheet::from_schema(&schema_of::<Capture<D::Field>>().to_value(), RowsOf::List("messages"));
-        let (mut text, mut count) = (sheet.header(&[]), 0_usize);
-        let mut written = Ok(());
-        self.rows(decoder, |row| {
-            row.push_csv(&mut text);
-            count += 1;
-            if count.is_multiple_of(ROWS_PER_BATCH) {
-                written = run.screen.data(&text);
-                text.clear();
-            }
-            written.is_ok()
-        })?;
-        written?;
-        run.screen.data(&text)
-    }
 }
 
 /// Fields of a [`Capture`].
@@ -165,7 +168,7 @@ struct Written<'a, M> {
 /// Messages that are read during serialization.
 struct Messages<'a, 'b, O, D>(RefCell<Option<(SecondPass<'a, 'b, O>, D)>>);
 
-impl<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder> Serialize for Messages<'_, '_, O, D> {
+impl<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder> Serialize for Messages<'_, '_, O, D> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut list = serializer.serialize_seq(None)?;
         let Some((second_pass, decoder)) = self.0.borrow_mut().take() else { return list.end() };
