@@ -101,8 +101,11 @@ impl MotionLog {
     /// Maximum number of motions. Later motions are not recorded.
     const CAPACITY: usize = 100_000;
 
-    /// Adds a motion.
+    /// Adds a motion. A command to the current position is no motion.
     pub(crate) fn push(&self, motion: Motion) {
+        if motion.took.is_zero() && motion.from == motion.to {
+            return;
+        }
         let mut motions = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if motions.len() < Self::CAPACITY {
             motions.push(motion);

@@ -21,7 +21,7 @@ pub struct DiffOptions {
     /// Only these files or parts: names or patterns, for example '*.JBI' or 'points*' (repeatable)
     #[arg(long, value_name = "PATTERN", value_delimiter = ',')]
     only: Vec<String>,
-    /// Tolerance of positions, for example 0.05, or 0.1mm,0.05deg,5pulses
+    /// Tolerance of positions, for example 0.05 (mm and degrees), or 0.1mm,0.05deg,5pulses
     #[arg(long, value_name = "LIMIT", value_delimiter = ',', value_parser = Limit::parse)]
     tolerance: Vec<Limit>,
     /// Compare all bytes, without a tolerance, and including the line ///DATE of jobs

@@ -47,7 +47,7 @@ pub struct CheckArguments {
     /// Report positions that differ from the positions in this folder
     #[arg(long, value_name = "FOLDER", add = ValueKind::Backup)]
     pub compare: Option<PathBuf>,
-    /// Tolerance of --compare, for example 0.05, or 0.1mm,0.05deg,5pulses
+    /// Tolerance of --compare, for example 0.05 (mm and degrees), or 0.1mm,0.05deg,5pulses
     #[arg(long, value_name = "LIMIT", value_delimiter = ',', value_parser = Limit::parse, requires = "compare")]
     tolerance: Vec<Limit>,
     /// Treat warnings as errors

@@ -24,9 +24,10 @@ use armctl_frame::store::keys_of;
 #[command(after_help = help())]
 pub struct Check {
     /// Program files; - means stdin [default: the program of the current task]
-    #[arg(value_name = "FILE", conflicts_with = "from")]
+    #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Check the programs in this folder: a backup, or files program-N.txt and *.toyo
+    /// Check the programs in this folder: a backup, or files program-N.txt and *.toyo. With files: check them with the
+    /// points, parameters and names of this backup
     #[arg(long, value_name = "FOLDER")]
     from: Option<PathBuf>,
     /// Number of steps of the task
@@ -68,19 +69,17 @@ impl Command for Check {
     }
 
     fn run_alone(&self) -> Result<Verdict> {
-        if let Some(folder) = &self.from {
-            let set = programs_in(folder)?;
-            let names = set.names.clone();
-            return self.check(set, &Source::Folder(folder.clone()), &names);
+        let of_folder = self.from.as_deref().map(programs_in).transpose()?;
+        let names = of_folder.as_ref().map(|set| set.names.clone()).unwrap_or_default();
+        if let Some(set) = of_folder.filter(|_| self.files.is_empty()) {
+            return self.check(set, &self.source(), &names);
         }
         let read = |path: &PathBuf| {
             let file = files::display_path(path);
             Ok(ProgramFile { name: file.clone(), file, bytes: files::read(path)? })
         };
         let files = self.files.iter().map(read).collect::<Result<_>>()?;
-        let folder = self.files.first().and_then(|path| path.parent());
-        let source = folder.map_or(Source::Nowhere, |folder| Source::Folder(folder.to_owned()));
-        self.check(ProgramSet { files, is_partial: true, ..ProgramSet::default() }, &source, &[])
+        self.check(ProgramSet { files, is_partial: true, ..ProgramSet::default() }, &self.source(), &names)
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Verdict> {
@@ -111,6 +110,18 @@ enum Source {
 }
 
 impl Check {
+    /// The folder of --from or of the files.
+    fn source(&self) -> Source {
+        let of_files = || self.files.first().and_then(|path| path.parent());
+        self.from.as_deref().or_else(of_files).map_or(Source::Nowhere, |folder| Source::Folder(folder.to_owned()))
+    }
+
+    /// File with the points of a program in a backup. A file with another name is a program of task 1.
+    fn points_in(&self, folder: &Path, name: &str) -> Option<PathBuf> {
+        let of_task_1 = || points_of(folder, "program-1").filter(|_| !self.files.is_empty());
+        points_of(folder, name).or_else(of_task_1)
+    }
+
     fn check(&self, set: ProgramSet, source: &Source, names: &[Name]) -> Result<Verdict> {
         let folder = if let Source::Folder(folder) = source { Some(folder.as_path()) } else { None };
         let names = Names::new(self.name.iter().chain(names).cloned().collect());
@@ -119,7 +130,7 @@ impl Check {
         settings.master = vec!["*".to_owned()];
         let (mut programs, mut parsed) = (Vec::new(), Vec::new());
         for file in &set.files {
-            let points = self.points.clone().or_else(|| points_of(folder?, &file.name));
+            let points = self.points.clone().or_else(|| self.points_in(folder?, &file.name));
             let taught = points.as_ref().map(|path| keys_of::<Points>(path, &files::read(path)?)).transpose()?;
             let known = ControllerData { points: taught.map(|points| points.into_iter().collect()) };
             let mut checked = check_file(file, usize::from(self.room).min(MAX_STEPS), &names, &known);
@@ -143,7 +154,7 @@ impl Check {
                 program.findings.extend(unused_positions(1, &unused));
             }
             if let Some(other) = &self.limits.compare {
-                let old = RobotData::of_files(points_of(other, &file.name).as_deref(), None)?;
+                let old = RobotData::of_files(self.points_in(other, &file.name).as_deref(), None)?;
                 let found = moved_points(data, &old, other, &settings);
                 program.findings.extend(at_uses(&program, found));
             }

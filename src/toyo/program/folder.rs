@@ -56,7 +56,7 @@ pub async fn program_of(link: &mut Link, screen: &Screen, task: Option<u8>) -> R
 
 /// File with the points of the task of a program in a backup.
 pub fn points_of(folder: &Path, name: &str) -> Option<PathBuf> {
-    let task = name.strip_prefix("program-")?;
+    let task = Path::new(name).file_stem()?.to_str()?.strip_prefix("program-")?;
     Some(folder.join(format!("points-{task}.csv"))).filter(|path| path.exists())
 }
 
