@@ -10,9 +10,10 @@ import sys
 
 STAMP = 35  # SO_TIMESTAMPNS
 interface, name, cycle = sys.argv[1], sys.argv[2], float(sys.argv[3])
-looker = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.ntohs(3))
-looker.bind((interface, 0))
+# Protocol 0 receives nothing: no frame arrives before its time is asked for.
+looker = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, 0)
 looker.setsockopt(socket.SOL_SOCKET, STAMP, 1)
+looker.bind((interface, 3))
 times = []
 
 
