@@ -39,7 +39,7 @@ for n in $NUMBERS; do
     nsenter -t $P -n sh -c "ip addr add 192.168.80.1$n/24 dev pb$n; ip link set lo up; ip link set pb$n up"
     nsenter -t $P -n "$ARMCTL" sim yrcx --bus profinet --interface pb$n --station-name robot-$n > "$FOLDER/$n" 2>&1 & D=$!
     ALL="$ALL $D"
-    until grep -q 'profinet://' "$FOLDER/$n"; do kill -0 $D || exit 1; done
+    wait_for profinet:// "$FOLDER/$n" $D
 done
 ROLE=devices "$PROGRAM" 2>&1
 cat /proc/loadavg

@@ -26,12 +26,13 @@ const CYCLE: Duration = Duration::from_millis(16);
 /// its figures on a line.
 const CHILD_VARIABLE: &str = r#"
 $THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 > "$FOLDER/sim" 2>&1 & D=$!
-until grep -q 'profinet://' "$FOLDER/sim"; do kill -0 $D || exit 1; done
+wait_for profinet:// "$FOLDER/sim" $D
 look() {
     name=$1
     shift
+    rm -f "$FOLDER/looker"
     python3 "$LOOKER" pc0 $name 0.016 > "$FOLDER/looker" & L=$!
-    until grep -q ready "$FOLDER/looker"; do kill -0 $L || return; done
+    wait_for ready "$FOLDER/looker" $L
     "$@" 2>&1
     kill $L
     wait $L

@@ -19,7 +19,7 @@ serve() {
     name=$1 options=$2
     shift 2
     "$@" > "$FOLDER/$name.sim" 2>&1 & ALL="$ALL $!"
-    until grep -q '^reach it' "$FOLDER/$name.sim"; do kill -0 $! || exit 1; done
+    wait_for '^reach it' "$FOLDER/$name.sim" $!
     target=$(sed -n "s/^reach it: .* -t '\(.*\)' yrcx.*/\1/p" "$FOLDER/$name.sim" | sed 's/@IFACE/@pc0/')
     "$ARMCTL" robots add $name "$target$options" --family yrcx > /dev/null || cat "$FOLDER/$name.sim"
     "$ARMCTL" -r $name --yes session open --background > /dev/null

@@ -260,6 +260,17 @@ fn no_file_names_a_development_machine() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// A shell creates the output file of a background command late, and an old file can have the text.
+#[test]
+fn scripts_wait_for_output_with_one_function() {
+    let files = ["tests", "benches"].into_iter().flat_map(|folder| committed(&root().join(folder)));
+    let waiting: Vec<_> = files
+        .filter(|file| !file.ends_with("namespaces.rs"))
+        .filter(|file| std::fs::read_to_string(file).is_ok_and(|text| text.contains(concat!("until ", "grep"))))
+        .collect();
+    assert!(waiting.is_empty(), "use `wait_for` of tests/profinet/namespaces.rs: {waiting:?}");
+}
+
 #[test]
 fn both_licences_exist() {
     for (file, words) in [("LICENSE-MIT", "MIT License"), ("LICENSE-APACHE", "Apache License")] {
