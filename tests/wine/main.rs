@@ -243,10 +243,16 @@ fn prints_the_same_as_elsewhere() {
 fn profinet_says_that_it_needs_linux() {
     let Some(wine) = wine() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let output = wine
-        .run(folder.path(), "-t profinet://robot-1@eth0?layout=0:0x1,1:0x101:i48,2:0x102:o48 --yes yrcx info version");
-    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-    assert!(stderr(&output).contains("PROFINET needs Linux: raw Ethernet"), "{}", stderr(&output));
+    for words in [
+        "-t profinet://robot-1@eth0?layout=0:0x1,1:0x101:i48,2:0x102:o48 --yes yrcx info version",
+        "-t profinet://robot-1@eth0 yrcx io get",
+        "-t profinet://robot-1@eth0 session open",
+        "-t profinet://robot-1@eth0 --yes yrcx servo on",
+    ] {
+        let output = wine.run(folder.path(), words);
+        assert_eq!(output.status.code(), Some(1), "{words}: {}", stderr(&output));
+        assert!(stderr(&output).contains("PROFINET needs Linux: raw Ethernet"), "{words}: {}", stderr(&output));
+    }
 }
 
 /// The name of a copy selects the family, but not for the processes that this copy starts.
