@@ -16,10 +16,9 @@ use armctl_frame::text_files;
                   lower case differ without -i. With several conditions, a line must meet all of them. If nothing is \
                   found, the exit code is also 0.\n\n--uses accepts B5, P12, LB0, C1, OUT3, IN#(12), OG#(1), \
                   #10010, UF#(1), and a name of the robot. A signal is also found in its group: OUT3 in OG#(1). In a \
-                  backup, the names come from the entry of the robot in the inventory, and from the name files of the backup \
-                  (IONAME.DAT, VARNAME.DAT). An indirect \
-                  variable or signal, such as B[I000], is found only by a text search.\n\nWithout --from, armctl reads \
-                  every job of the controller first."
+                  backup, the names come from its inventory entry and its name files (IONAME.DAT, VARNAME.DAT). \
+                  An indirect variable or signal, such as B[I000], is found only by a text search.\n\nWithout --from, \
+                  armctl reads every job of the controller first."
 )]
 pub struct Search {
     #[command(flatten)]
