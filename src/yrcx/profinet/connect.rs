@@ -23,8 +23,10 @@ use armctl_transport::profinet::wire::record::Parameter;
 
 pub(super) async fn open(at: ConnectionParameters<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
     let profinet: &Profinet = at.options()?;
-    // Without the interface, or on a platform without raw Ethernet, no other advice helps.
-    Interface::find(&profinet.interface)?;
+    // Without raw Ethernet, no other advice helps.
+    if let Err(error @ ProfinetError::Platform) = Interface::find(&profinet.interface) {
+        return Err(error.into());
+    }
     if purpose == Purpose::Look {
         // To read the signals, armctl would have to open a connection, and the end of the connection would stop the
         // controller.
