@@ -1,7 +1,6 @@
 //! A small run of the fault campaign: the built binary against strict controllers in Python, on real sockets and
 //! pseudo-terminals, with a fault in each operation. `docs/reliability.md` has the large run. Without Python 3.9 or
 //! later, the test is skipped with a message; without user namespaces, only PROFINET is skipped.
-#![cfg(target_os = "linux")]
 
 use std::path::Path;
 use std::process::Command;

@@ -416,7 +416,11 @@ fn repeats_and_reports_an_unconfirmed_hold() {
 #[test]
 fn second_ctrl_c_ends_the_process_at_once() {
     for signal in ["INT", "TERM"] {
-        let controller = robot(|asked| (asked.command == 0x83).then_some(Reaction::Silence));
+        let has_ended = Arc::new(AtomicBool::new(false));
+        let is_silent = Arc::clone(&has_ended);
+        let controller = robot(move |asked| {
+            (asked.command == 0x83 && !is_silent.load(Ordering::Relaxed)).then_some(Reaction::Silence)
+        });
         let mut child = controller.start(&format!("{MOVE} --timeout 600s"));
         controller.wait_for(|asked| asked.command == 0x72);
         interrupt(&child);
@@ -428,6 +432,8 @@ fn second_ctrl_c_ends_the_process_at_once() {
             let _sent = Command::new("kill").args(["-s", signal, &pid]).stderr(Stdio::null()).status();
             std::thread::yield_now();
         }
+        // The guardian of the process stops the robot, and holds stderr until then.
+        has_ended.store(true, Ordering::Relaxed);
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
         assert!(stderr(&output).contains("again: armctl ended at once"), "{}", stderr(&output));

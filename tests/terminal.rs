@@ -12,6 +12,8 @@ mod support {
 
 mod bad_input;
 mod bounds;
+#[cfg(target_os = "linux")]
+mod campaign;
 mod cli;
 mod eip_bad_input;
 mod environment;

@@ -144,6 +144,17 @@ impl RunMode {
     }
 }
 
+/// Divides the lines among controllers that run at the same time, because a line waits most of its time for its link.
+/// The argument of `hold` is the number of the part, from 0, and the number of parts.
+fn in_parts(parts: usize, hold: impl Fn((usize, usize)) + Sync) {
+    std::thread::scope(|scope| {
+        let hold = &hold;
+        for part in 0..parts {
+            scope.spawn(move || hold((part, parts)));
+        }
+    });
+}
+
 /// An environment with a robot. Its backup `press` differs from the controller.
 pub struct Bench<'a> {
     desk: Workspace,

@@ -2,11 +2,14 @@
 
 use std::process::Command;
 
+use super::in_parts;
 use super::yrcx::{Controller, hold_all};
 use crate::support::namespaces::{SKIPPED, run};
 
 /// Environment variable with the command prefix that runs a program in the second network namespace.
 const DEVICE_ADDRESS: &str = "THERE";
+/// Environment variable with the number of the part of the lines, and the number of parts.
+const PART: &str = "PART";
 
 #[test]
 fn profinet_commands_send_only_authorized_frames() {
@@ -14,10 +17,10 @@ fn profinet_commands_send_only_authorized_frames() {
     let program = program.to_str().expect("its path is UTF-8");
     let inside =
         "exec \"$PROGRAM\" --exact gate::recorder::network::runs_between_two_network_cards --ignored --nocapture 2>&1";
-    match run(inside, &[("PROGRAM", program)]) {
+    in_parts(3, |(part, parts)| match run(inside, &[("PROGRAM", program), (PART, &format!("{part} {parts}"))]) {
         None => println!("{SKIPPED}"),
         Some(text) => assert!(text.contains("test result: ok. 1 passed"), "{text}"),
-    }
+    });
 }
 
 #[test]
@@ -28,5 +31,8 @@ fn runs_between_two_network_cards() {
     let mut armctl = Command::new(words.next().expect("a program"));
     armctl.args(words).arg(env!("CARGO_BIN_EXE_armctl"));
     let controller = Controller::start(armctl, "profinet", &["--interface", "pd0"]).url_of_bus("@IFACE", "@pc0");
-    hold_all(controller, (0, 1));
+    let part = std::env::var(PART).expect("the part of the lines");
+    let (part, parts) = part.split_once(' ').expect("two numbers");
+    let number = |text: &str| text.parse().expect("a number");
+    hold_all(controller, (number(part), number(parts)));
 }

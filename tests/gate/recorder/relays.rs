@@ -7,7 +7,7 @@ use std::thread;
 
 use armctl_controller::{toyo, yerc};
 
-use super::{Bench, Effect, Recorder};
+use super::{Bench, Effect, Recorder, in_parts};
 use crate::support::simulator::Simulator;
 
 type Sent = Arc<Mutex<Vec<Vec<u8>>>>;
@@ -139,6 +139,10 @@ fn yerc_commands_send_only_authorized_frames() {
 
 #[test]
 fn toyo_commands_send_only_authorized_lines() {
+    in_parts(3, hold_toyo);
+}
+
+fn hold_toyo(part: (usize, usize)) {
     let controller = Simulator::start("toyo");
     let (address, _) = controller.place();
     let sent = Sent::default();
@@ -154,7 +158,7 @@ fn toyo_commands_send_only_authorized_lines() {
         },
         _controller: controller,
     };
-    let mut bench = Bench::new(&mut relay, (0, 1));
+    let mut bench = Bench::new(&mut relay, part);
     bench.prepare("toyo point set 7 1 2 3 4 --yes");
     bench.prepare("backup press --yes");
     bench.prepare("toyo point set 7 9 9 9 9 --yes");

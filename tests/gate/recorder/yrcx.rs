@@ -9,7 +9,7 @@ use armctl_controller::yrcx::signal::{Side, Signal, resting};
 use armctl_controller::yrcx::table::Row;
 use armctl_frame::settings::target::bus::simulators;
 
-use super::{Bench, Effect, Recorder};
+use super::{Bench, Effect, Recorder, in_parts};
 
 /// The state has only the data that the lines overwrite, so that a complete backup is fast.
 const STATE: &str = r#"
@@ -153,8 +153,11 @@ impl Drop for Controller {
 /// Runs a part of the lines in all modes with a controller.
 pub fn hold_all(mut controller: Controller, part: (usize, usize)) {
     let mut bench = Bench::new(&mut controller, part);
+    // Some buses need a minute for a backup, so it comes from a controller within armctl.
+    bench.write("state.toml", STATE);
+    let backup = bench.desk.run("-t sim:?state=state.toml yrcx backup press");
+    assert_eq!(backup.exit, Some(0), "{backup:?}");
     bench.prepare("session open --background --yes");
-    bench.prepare("yrcx backup press");
     // These changes make the controller differ from the backup.
     for line in ["point set 7 --mm 9,9,9,9", "comment set 100 OTHER", "shift-data set 1 9 9 9 9"] {
         bench.prepare(&format!("yrcx {line} --yes"));
@@ -167,30 +170,20 @@ fn armctl() -> Command {
     Command::new(env!("CARGO_BIN_EXE_armctl"))
 }
 
-/// Divides the lines among controllers that run at the same time. Each line waits most of its time for its bus, for
-/// example two seconds for the check of MAC IDs on DeviceNet.
-fn hold_in_parts(bus: &str, more: &[&str]) {
-    const PARTS: usize = 2;
-    std::thread::scope(|scope| {
-        for part in 0..PARTS {
-            scope.spawn(move || hold_all(Controller::start(armctl(), bus, more), (part, PARTS)));
-        }
-    });
-}
-
 #[test]
 fn ethernet_ip_commands_send_only_authorized_frames() {
-    hold_in_parts("eip", &["--bind", "127.0.0.1:0"]);
+    in_parts(2, |part| hold_all(Controller::start(armctl(), "eip", &["--bind", "127.0.0.1:0"]), part));
 }
 
 #[test]
 fn devicenet_commands_send_only_authorized_frames() {
-    hold_in_parts("devicenet", &[]);
+    // The check of MAC IDs makes each line wait for two seconds.
+    in_parts(6, |part| hold_all(Controller::start(armctl(), "devicenet", &[]), part));
 }
 
 #[test]
 fn profibus_commands_send_only_authorized_frames() {
-    hold_in_parts("profibus", &[]);
+    in_parts(4, |part| hold_all(Controller::start(armctl(), "profibus", &[]), part));
 }
 
 /// Checks that every fieldbus has a test in this file. Add a test here for each new fieldbus.

@@ -386,6 +386,11 @@ impl<P: ImagePeer> Peer for Slave<P> {
 
     fn transmit(&mut self, now: Now) -> Option<(usize, Vec<u8>)> {
         self.watch(now);
+        // The peer also works while no master reads its image. Otherwise, its next event would stay in the past, and the
+        // caller would never sleep.
+        if self.peer.wake().is_some_and(|wake| wake <= now) {
+            let _unread_image = self.peer.output(now);
+        }
         let at = self.answers.iter().position(|answer| answer.0 <= now)?;
         Some((0, self.answers.remove(at).1))
     }

@@ -64,6 +64,34 @@ impl ImagePeer for Echo {
     }
 }
 
+/// Peer that changes something every five milliseconds.
+#[derive(Debug)]
+struct Scanning {
+    next: Now,
+}
+
+impl ImagePeer for Scanning {
+    fn input(&mut self, _now: Now, _image: Option<&[u8]>) {}
+
+    fn output(&mut self, now: Now) -> Option<Vec<u8>> {
+        self.next = now + 5 * MS;
+        None
+    }
+
+    fn wake(&self) -> Option<Now> {
+        Some(self.next)
+    }
+}
+
+#[test]
+fn peer_works_without_a_master() {
+    let setup = Setup::sample_controller(Rate::from_name("500k").unwrap());
+    let mut slave = Slave::new(setup, Scanning { next: 5 * MS });
+    for number in 1..10 {
+        assert_eq!((slave.wake(), slave.transmit(number * 5 * MS)), (Some(number * 5 * MS), None));
+    }
+}
+
 struct World {
     now: Now,
     master: Master,
