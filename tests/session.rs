@@ -430,7 +430,9 @@ fn session_keeps_each_fieldbus_and_its_end_is_an_alarm() {
             workspace.run("-r cell yrcx move --to 300,0,0,0 --speed-of-max 100 --yes").status.success(),
             "{target}"
         );
-        workspace.data("session close cell");
+        let closed = workspace.run("session close cell");
+        let said = String::from_utf8_lossy(&closed.stderr).into_owned();
+        assert!(closed.status.success() && said.contains(&format!("stops and raises alarm {alarm}")), "{said}");
         assert_eq!(session.end().0, Some(0), "{target}");
         let _session = Running::session(&workspace, "cell");
         assert_eq!(workspace.data("-r cell yrcx alarm history 1")["alarms"][0]["code"], alarm);

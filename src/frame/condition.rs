@@ -111,10 +111,12 @@ impl Condition {
         if let Some(name) = &self.name {
             let is_known = data.contains_key(name) || has_item(&first["data"], name);
             return (!is_known).then(|| {
+                let keys: Vec<&str> = data.keys().map(String::as_str).collect();
                 format!(
-                    "'{}': this report has no key and no item {name}, so this condition may never be true; use \
-                     `armctl wait '{}'` to read the item",
-                    self.text, self.text
+                    "'{}': this report has no key and no item {name}, so this condition may never be true; keys: {}. \
+                     `armctl wait` reads a signal or value of this name",
+                    self.text,
+                    keys.join(", ")
                 )
             });
         }

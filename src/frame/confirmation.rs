@@ -67,7 +67,7 @@ impl<'a> Confirmer<'a> {
                 return Err(not_confirmed(self.robot, risk, &text));
             }
             let question = Question::Yes("Continue?".to_owned());
-            ask(self.screen, self.robot, change.lines(), question, "nothing was changed").await?;
+            ask(self.screen, self.robot, change.lines(), question, "the command changed nothing").await?;
         }
         self.grant.raise(risk);
         Ok(())

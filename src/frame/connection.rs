@@ -152,6 +152,11 @@ pub trait Family: Sized + 'static {
         ConnectionEffect::Harmless
     }
 
+    /// What the controller does when the client that sends commands closes its connection; `None` if it does nothing.
+    fn end_effect(_robot: &Robot) -> Option<String> {
+        None
+    }
+
     /// Whether the controller accepts only one client. In that case, all commands of this computer share its link.
     fn takes_one_client(_robot: &Robot) -> bool {
         false
@@ -190,6 +195,8 @@ pub struct Driver {
     pub stop: &'static [&'static str],
     /// See [`Family::connection_effect`].
     pub connection_effect: fn(&Robot, ConnectMode) -> ConnectionEffect,
+    /// See [`Family::end_effect`].
+    pub end_effect: fn(&Robot) -> Option<String>,
     /// See [`Family::takes_one_client`].
     pub takes_one_client: fn(&Robot) -> bool,
     /// See [`Family::addresses`].
@@ -213,6 +220,7 @@ impl<F: Family> Driving<F> {
         family: F::FAMILY,
         stop: F::STOP,
         connection_effect: F::connection_effect,
+        end_effect: F::end_effect,
         takes_one_client: F::takes_one_client,
         addresses: F::addresses,
         connect: |robot, access, screen| {

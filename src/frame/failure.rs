@@ -138,7 +138,9 @@ impl Failure {
             ErrorKind::IsADirectory => failure.hint("name a file, not a folder"),
             ErrorKind::FileTooLarge => failure.hint("check that this is the correct file"),
             ErrorKind::NotADirectory => failure.hint("check the path: a part of it is a file, not a folder"),
-            ErrorKind::NotFound => failure.hint("check the path; armctl does not create missing folders"),
+            ErrorKind::NotFound => {
+                failure.hint("check the path: a file to read, or the folder of a file to write, must exist")
+            }
             _ => failure,
         }
     }

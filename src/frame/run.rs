@@ -234,6 +234,7 @@ impl Run {
         let report =
             self.run_once(command, robot).await.map_err(|failure| RunError::for_robot(robot, command, failure))?;
         let printed = self.print(robot, command.id(), &*report, ReportPosition::Alone);
+        self.note_default_robot(command, robot);
         if let Some(failure) = report.failure() {
             // If stdout is closed or full, the failure stays the same.
             let is_reported = printed.is_ok() && self.screen.is_json();
@@ -242,6 +243,20 @@ impl Run {
         printed.map_err(|failure| self.mark_unprinted(command.intent(None).risk, failure))?;
         let checked = self.check(&Envelope::of(robot, command.id(), report.data()));
         checked.map_err(|failure| RunError::for_robot(robot, command, failure))
+    }
+
+    /// After a stop or a change by a command of all families: says that the command was only for the default robot.
+    fn note_default_robot(&self, command: &dyn AnyCommand, robot: &Robot) {
+        let intent = command.intent(Some(robot));
+        let others = self.sources.inventory.robots.len().saturating_sub(1);
+        let is_change = intent.is_stop || intent.risk > Risk::Read;
+        if others > 0 && command.family().is_none() && is_change && self.sources.selects_default() {
+            let robots = if others == 1 { "robot" } else { "robots" };
+            self.screen.note(&format!(
+                "only for {}, the default robot; --all includes the other {others} {robots}",
+                robot.name
+            ));
+        }
     }
 
     /// Evaluates the condition of `--check`.

@@ -47,7 +47,7 @@ pub struct Link {
     trace: Arc<Mutex<Trace>>,
     /// Packet recorder, for `--trace` on a network.
     recorder: Option<Recorder>,
-    label: String,
+    pub(crate) label: String,
     /// Alarm that the controller raises when it loses the link.
     link_alarm: Alarm,
     is_simulated: bool,
@@ -116,6 +116,13 @@ impl Family for Yrcx {
         }
     }
 
+    fn end_effect(robot: &Robot) -> Option<String> {
+        match connect::endpoint(robot) {
+            Ok(Endpoint::Bus(bus, fieldbus)) if bus.is_owner => Some(end_effect(fieldbus.link_alarm)),
+            _ => None,
+        }
+    }
+
     fn addresses(robot: &Robot) -> Result<Vec<target::Address>> {
         match connect::endpoint(robot)? {
             Endpoint::Bus(bus, Fieldbus { addresses: Some(addresses), .. }) => {
@@ -143,16 +150,23 @@ impl Family for Yrcx {
             screen.detail(1, &format!("{label}: the connection was not closed properly: {error}"));
         }
         if ends_link {
-            let lasting = Alarm::new(link_alarm.group, link_alarm.category + 1);
             screen.note(&format!(
-                "{label}: the connection is closed. The controller treats the close as a link fault: the controller \
-                 stops and raises alarm {link_alarm} or {lasting} (`armctl help safety`). Use `armctl session open -r \
-                 NAME` to keep a connection open"
+                "{label}: the connection is closed. {}. Use `armctl session open -r NAME` to keep a connection open",
+                end_effect(link_alarm)
             ));
         }
         let recorded = lock_writer(&trace).finish().and(recorder.map_or(Ok(()), Recorder::finish));
         left.and(recorded)
     }
+}
+
+/// What the controller does at the end of a connection.
+fn end_effect(link_alarm: Alarm) -> String {
+    let lasting = Alarm::new(link_alarm.group, link_alarm.category + 1);
+    format!(
+        "The controller treats the close as a link fault: the controller stops and raises alarm {link_alarm} or \
+         {lasting} (`armctl help safety`)"
+    )
 }
 
 /// Client options for these settings.

@@ -6,6 +6,8 @@ pub mod edit;
 pub mod entry;
 pub mod file;
 
+use std::collections::HashSet;
+
 use clap::Subcommand;
 
 use self::entry::check_known;
@@ -13,6 +15,7 @@ use armctl_frame::prelude::*;
 use armctl_frame::settings::inventory::{Entry, matches_pattern};
 use armctl_frame::settings::model::ModelCache;
 use armctl_frame::settings::place::Place;
+use armctl_frame::settings::target::Address;
 use armctl_frame::settings::{Origin, Setting};
 
 /// Commands for the inventory.
@@ -149,12 +152,20 @@ impl List {
             is_named && selection.tags.iter().all(|tag| robot.has_tag(tag))
         };
         let robots: Vec<&Entry> = inventory.robots.iter().filter(is_chosen).collect();
+        // A controller is read-only under every name that leads to it.
+        let bound: HashSet<Address> = Family::ALL
+            .into_iter()
+            .flat_map(|family| run.sources.read_only(family))
+            .filter(|(_, entry)| !entry.target.is_simulated())
+            .map(|(address, _)| address)
+            .collect();
         let has_others = robots.len() < inventory.robots.len();
         let robots = robots.into_iter().map(|robot| Listed {
             name: robot.name.clone(),
             family: robot.family.name(),
             target: robot.target.url().to_owned(),
-            read_only: robot.options.read_only.or(inventory.defaults.read_only).unwrap_or(false),
+            read_only: robot.options.read_only.or(inventory.defaults.read_only).unwrap_or(false)
+                || bound.contains(&robot.target.address()),
             default: inventory.default.as_ref() == Some(&robot.name),
             tags: robot.tags.clone(),
             place: robot.place.clone(),

@@ -5,8 +5,8 @@ use std::marker::PhantomData;
 use super::arguments::{BackupOptions, RestoreOptions};
 use super::compare::Differences;
 use super::diff::DiffOptions;
-use super::manifest;
 use super::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
+use super::{manifest, save};
 use crate::local_names::private_folder;
 use crate::prelude::basics::*;
 use crate::settings::inventory::Inventory;
@@ -69,7 +69,7 @@ impl<F: Backups> Command for Backup<F> {
 
     async fn run(&self, context: Context<'_, F>) -> Result<BackupReport> {
         let making = self.options.making(None);
-        let folder = private_folder(&making.folder, &context.robot.name, context.several);
+        let folder = save::folder_for(&making.folder, context.robot, context.several)?;
         F::back_up(context, SaveOptions { folder, ..making }).await
     }
 }

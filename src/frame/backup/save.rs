@@ -58,7 +58,7 @@ impl<C: About> Task<C> {
     /// Reads the target folder. If the user gave no selection, an existing backup supplies the selection.
     pub fn new(making: SaveOptions, robot: &Robot, several: bool) -> Result<Self> {
         let SaveOptions { folder, scope, resume, force } = making;
-        let folder = private_folder(&folder, &robot.name, several);
+        let folder = folder_for(&folder, robot, several)?;
         let earlier: Option<Manifest<C>> =
             manifest::find_earlier_backup(&folder, robot, scope.as_deref(), resume, force)?;
         let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
@@ -85,6 +85,18 @@ impl<C: About> Task<C> {
         list.write(folder)?;
         Ok(BackupWriter { list, folder, screen, files: Vec::new(), written: Instant::now(), is_closed: false })
     }
+}
+
+/// Folder for the backup of a robot: with several robots, a folder for each of them within `folder`.
+///
+/// # Errors
+/// `folder` is itself the backup of a robot.
+pub fn folder_for(folder: &Path, robot: &Robot, several: bool) -> Result<PathBuf> {
+    if several && let Some(earlier) = manifest::read::<Value>(folder)? {
+        let backup = format!("{} is the backup of {}", folder.display(), earlier.robot);
+        return Err(Failure::usage(format!("{backup}, not a folder for several backups")).hint("use another folder"));
+    }
+    Ok(private_folder(folder, &robot.name, several))
 }
 
 /// Runs a backup until it ends or Ctrl-C; a failure reports what is saved.

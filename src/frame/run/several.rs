@@ -105,7 +105,9 @@ impl Run {
     fn failed(&self, failures: &[Failure], robots: usize) -> Result<(), RunError> {
         let Some(first) = failures.first() else { return Ok(()) };
         let failure = if failures.len() == robots && failures.iter().all(|failure| failure.kind == first.kind) {
-            Failure::new(first.kind, "all robots failed")
+            let all =
+                if first.kind == Kind::ConditionNotMet { "no robot passed the check" } else { "all robots failed" };
+            Failure::new(first.kind, all)
         } else {
             Failure::new(Kind::Mixed, format!("{} of {robots} robots failed", failures.len()))
         };

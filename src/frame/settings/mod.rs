@@ -289,6 +289,13 @@ impl Sources {
         )))
     }
 
+    /// Whether no flag and no variable selects a robot, so that the default robot is used.
+    pub fn selects_default(&self) -> bool {
+        let Selection { sim, target, all, robots, tags, environment, .. } = &self.selection;
+        let is_selected = *sim || *all || target.is_some() || environment.is_some();
+        !is_selected && robots.is_empty() && tags.is_empty()
+    }
+
     /// Whether the robots come from the inventory. A change of the inventory can then change the robots.
     pub fn follows_inventory(&self) -> bool {
         let Selection { sim, target, all, robots, tags, environment, .. } = &self.selection;

@@ -155,13 +155,21 @@ impl Reading<'_> {
             let numbers: Vec<i32> = numbers.into_iter().collect();
             let Self { link, screen, list, .. } = self;
             let read = async {
-                Ok(saved(part, content::read_points(link, screen, &numbers, &always, is_open.then_some(gap)).await?))
+                let text = content::read_points(link, screen, &numbers, &always, is_open.then_some(gap)).await?;
+                Ok(saved(part, text))
             };
             if !list.part(entry(part), read).await? {
                 return Ok(false);
             }
             let defined = if self.is_saved(part) { content::defined(part, folder)? } else { Vec::new() };
             gap = gap_after(gap, within, &defined);
+        }
+        if self.selection.points.is_none() && gap >= MAX_UNDEFINED_RUN {
+            self.screen.note(&format!(
+                "{}: the search for points ended after {MAX_UNDEFINED_RUN} undefined points in a row; use --points \
+                 0..29999 to read all points",
+                self.link.label
+            ));
         }
         Ok(true)
     }

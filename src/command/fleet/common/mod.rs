@@ -87,6 +87,7 @@ static PER_ROBOT: Driver = Driver {
     family: None,
     stop: &[],
     connection_effect: |robot, mode| (families::driver(robot).connection_effect)(robot, mode),
+    end_effect: |robot| (families::driver(robot).end_effect)(robot),
     takes_one_client: |robot| (families::driver(robot).takes_one_client)(robot),
     addresses: |robot| (families::driver(robot).addresses)(robot),
     connect: |robot, access, screen| (families::driver(robot).connect)(robot, access, screen),

@@ -82,6 +82,14 @@ impl NewRobot {
     /// Writes the entry to the file, with other settings `KEY=VALUE`.
     pub fn add(self, run: &Run, id: &'static str, settings: &[String]) -> Result<(), RunError> {
         let settings = assignments(settings, self.family)?;
+        let (address, is_simulated) = (self.target.address(), self.target.is_simulated());
+        let same = run.sources.inventory.robots.iter().find(|entry| entry.target.address() == address);
+        if let Some(other) = same.filter(|_| !is_simulated) {
+            run.screen.note(&format!(
+                "{} has the same address as {}; a controller is read-only under both names if it is under one",
+                self.name, other.name
+            ));
+        }
         let file = change(run, |document| {
             document.add(self.table(), self.is_default)?;
             settings.into_iter().try_for_each(|(key, new)| document.set(&self.name, key, new).map(drop))

@@ -60,6 +60,13 @@ async fn choose(run: &Run) -> Result<Option<String>> {
     Ok(robot)
 }
 
+/// What the controller does at the end of this session.
+fn end_effect(run: &Run, info: &Info) -> Option<String> {
+    let (target, family) = (info.target.parse().ok()?, info.family.parse().ok()?);
+    let robot = run.sources.at(&target, family).ok()?;
+    (families::driver(&robot).end_effect)(&robot)
+}
+
 impl Close {
     pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         let selection = &run.sources.selection;
@@ -106,7 +113,12 @@ impl Close {
             if selection.all || names.iter().any(|name| is_named(&info, name)) {
                 let label = format!("{} ({})", info.robot, info.target);
                 let became = match close(&location, self.force).await {
-                    Ok(true) => "closed",
+                    Ok(true) => {
+                        if let Some(effect) = end_effect(run, &info) {
+                            run.screen.note(&format!("{label}: the session is closed. {effect}"));
+                        }
+                        "closed"
+                    }
                     Ok(false) => {
                         location.clear().map_err(|error| folder_failure(&error))?;
                         "forgotten"

@@ -86,7 +86,7 @@ pub const KEYS: [KeyHelp; 12] = [
     KeyHelp { key: "↑ ↓", short: "axis", full: "select the axis" },
     KeyHelp { key: "Space", short: "STOP", full: "stop the robot, at any time" },
     KeyHelp { key: "+ -", short: "size", full: "larger steps, smaller steps" },
-    KeyHelp { key: "< >", short: "speed", full: "slower, faster" },
+    KeyHelp { key: ", .", short: "speed", full: "slower, faster; also < >" },
     KeyHelp { key: "c", short: "system", full: "next coordinate system; also Tab" },
     KeyHelp { key: "T", short: "teach", full: "teach: store the current position as a point" },
     KeyHelp { key: "G", short: "go", full: "move to a point in one motion" },

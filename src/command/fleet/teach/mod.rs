@@ -52,7 +52,8 @@ impl Teach {
             risk: Risk::Motion,
             text: format!(
                 "move the robot as you press keys, one axis by at most {max_step} mm or degrees (for joints, the step \
-                 on the screen) at a time, at a speed of at most {max_speed} mm/s, deg/s or percent, and store points"
+                 on the screen) at a time, at a speed of at most {max_speed} mm/s, deg/s or percent (Toyo: at the \
+                 speed of the controller), and store points"
             ),
             confirmation: Confirmation::Question,
             is_stop: false,

@@ -7,7 +7,7 @@ use std::path::Path;
 use super::{Place, Target};
 
 /// Address of a controller.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Address {
     /// On the network. The transport is part of it, because two servers can have the same port number.
     Network {
@@ -41,7 +41,7 @@ pub enum Address {
 }
 
 /// A host.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Host {
     /// An IP address.
     Address(IpAddr),
