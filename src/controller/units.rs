@@ -268,4 +268,12 @@ mod tests {
             assert!(matches!(MILLIMETRE.parse(junk), Err(UnitError::Malformed { .. })), "{junk:?}");
         }
     }
+
+    #[test]
+    fn errors_name_the_unit_and_shorten_the_text() {
+        let error = |unit: Unit, text: &str| unit.parse(text).unwrap_err().to_string();
+        assert_eq!(error(MILLIMETRE, "ten"), "'ten' is not a number of mm");
+        assert_eq!(error(MILLIMETRE, &"x".repeat(41)), format!("'{}...' is not a number of mm", "x".repeat(40)));
+        assert_eq!(error(Unit { symbol: "", ..MILLIMETRE }, "ten"), "'ten' is not a number");
+    }
 }

@@ -118,7 +118,7 @@ pub struct Globals {
     /// Repeat a read, every second or every INTERVAL
     #[arg(long, global = true, hide_short_help = true, value_name = "INTERVAL", num_args = 0..=1, default_missing_value = "1s", value_parser = duration::parse_some, help_heading = "Repeat")]
     pub watch: Option<Duration>,
-    /// Stop after N reads
+    /// Stop after N reports
     #[arg(long, global = true, hide_short_help = true, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), help_heading = "Repeat")]
     pub count: Option<u64>,
     /// Repeat a read until this condition is met: a state, for example idle, or NAME=VALUE, or a jq filter over the

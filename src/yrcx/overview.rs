@@ -42,13 +42,15 @@ pub(super) async fn alarms(link: &mut Link) -> Result<Vec<Alarm>> {
         (false, true) => Kind::Warning,
     };
     let known = if not_asked(link, &image).is_none() { latest_alarm(link).await? } else { None };
-    let untold = || Alarm {
+    let untold = || {
+        Alarm {
         text: Some(
-            "the alarm number was not read; use `yrcx alarm list` to read it, which takes control of the controller"
+            "the alarm number was not read; `yrcx alarm list` of this robot reads it, and takes control of the controller"
                 .to_owned(),
         ),
         source: Source::Armctl,
         ..Alarm::default()
+    }
     };
     Ok(vec![Alarm { kind: Some(kind), ..known.unwrap_or_else(untold) }])
 }

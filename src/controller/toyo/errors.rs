@@ -26,7 +26,7 @@ pub struct Explanation {
 }
 
 impl Explanation {
-    /// Formats the explanation as one line, for example `0x28: axis 1: beyond the plus soft limit while moving`.
+    /// Formats the explanation as one line, for example `28: axis 1: beyond the plus soft limit while moving`.
     pub fn in_a_line(&self) -> String {
         format!("{:02X}: {}", self.code, self.name)
     }
@@ -177,6 +177,15 @@ mod tests {
         for gap in [0x00, 0x25, 0x2E, 0x5E, 0xB8, 0xC8, 0xFF] {
             assert!(!explain(gap).known, "{gap:02X}");
         }
+    }
+
+    #[test]
+    fn digits_of_an_axis_error_are_axis_and_kind() {
+        let lines = [0x20, 0x28, 0x5D, 0xC3].map(|code| explain(code).in_a_line());
+        assert_eq!(lines[0], "20: axis 1: communication error");
+        assert_eq!(lines[1], "28: axis 1: beyond the plus soft limit while moving");
+        assert!(lines[2].starts_with("5D: axis 4: "), "{}", lines[2]);
+        assert_eq!(lines[3], "C3: axis 2: target beyond the minus soft limit");
     }
 
     #[test]

@@ -590,6 +590,9 @@ mod tests {
         assert!(STEP.read("5000").is_ok());
         assert!(matches!(STEP.read("5001"), Err(FieldError::Range { .. })));
         assert!(matches!(STEP.read("x"), Err(FieldError::Form { .. })));
+        assert!(matches!(X.read("1.005"), Err(FieldError::Decimals { .. })));
+        assert!(matches!(X.read("1.0e1"), Err(FieldError::Form { .. })));
+        assert!(matches!(X.read("999999999999"), Err(FieldError::Form { .. })));
         assert_eq!(COMPARE.read("<").unwrap(), Value::Word("< "));
     }
 }

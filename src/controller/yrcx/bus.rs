@@ -188,6 +188,14 @@ mod tests {
     }
 
     #[test]
+    fn a_bus_is_found_by_its_name() {
+        for bus in Bus::ALL {
+            assert_eq!(bus.name().parse(), Ok(bus));
+        }
+        assert!("canopen".parse::<Bus>().unwrap_err().contains("known: "));
+    }
+
+    #[test]
     fn words_of_devicenet_and_ethernet_ip() {
         let rows = rows(Bus::EtherNetIp, Side::Input);
         assert_eq!(

@@ -348,6 +348,16 @@ mod tests {
     }
 
     #[test]
+    fn only_the_switch_on_of_a_signal_can_be_dangerous() {
+        for signal in Signal::all(Side::Input) {
+            let on = signal.dedicated().map_or(Risk::Write, |dedicated| dedicated.risk);
+            assert_eq!((signal.risk(true), signal.risk(false)), (on, Risk::Write), "{signal}");
+        }
+        let dangerous = Signal::all(Side::Input).filter(|signal| signal.risk(true) == Risk::Motion);
+        assert!(dangerous.count() > 3);
+    }
+
+    #[test]
     fn reserved_bits_are_no_signals() {
         let reserved = |side| {
             (0..16_u16)

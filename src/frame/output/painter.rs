@@ -128,7 +128,8 @@ impl Painter<'_> {
     /// Draws the help for all keys over the screen.
     pub fn draw_help<'a>(&mut self, area: Rect, title: &str, keys: impl ExactSizeIterator<Item = &'a KeyHelp> + Clone) {
         const KEY: u16 = 8;
-        let columns = keys.clone().map(|key| width(key.full)).max().unwrap_or_default();
+        let title_width = width(title).saturating_sub(usize::from(KEY));
+        let columns = keys.clone().map(|key| width(key.full)).max().unwrap_or_default().max(title_width);
         let needed =
             (u16::try_from(columns).unwrap_or_default() + KEY + 6, u16::try_from(keys.len()).unwrap_or_default() + 5);
         let (columns, lines) = (needed.0.min(area.width), needed.1.min(area.height));

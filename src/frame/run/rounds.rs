@@ -144,7 +144,7 @@ impl<'a> Rounds<'a> {
     pub fn end(&self) -> Result<()> {
         let Some(until) = &self.repeat.until else { return Ok(()) };
         Err(Failure::new(Kind::ConditionNotMet, format!("the condition '{until}' was not met"))
-            .hint("use --for to set a longer wait"))
+            .hint("use `armctl status` to see the present state; --for sets a longer wait"))
     }
 }
 

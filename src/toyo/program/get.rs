@@ -61,7 +61,9 @@ fn parse_file(text: &str) -> Result<PathBuf, String> {
     let is_step = text.starts_with(|first: char| first.is_ascii_digit())
         && text.chars().all(|one| one.is_ascii_digit() || ",.-".contains(one));
     if is_step {
-        return Err(format!("steps are selected with --from and --to; a file of this name is ./{text}"));
+        return Err(format!(
+            "a task is selected with --task, steps with --from and --to; a file of this name is ./{text}"
+        ));
     }
     Ok(text.into())
 }

@@ -208,6 +208,18 @@ fn suspicious_text_is_a_warning() {
 }
 
 #[test]
+fn what_would_stop_a_controller_is_a_warning() {
+    let port = "line 1, column 1: warning: internal port 5 may not exist";
+    let warnings = findings("INSP PN5=.......1 AND\nIOUT PN5=.......1\nEND\n");
+    assert!(warnings.len() == 2 && warnings[0].starts_with(port), "{warnings:?}");
+    assert!(findings("IOUT PN4=.......1\nEND\n").is_empty());
+    let warnings = findings("MINI GRP=1\nMVM S GRP=1 V=0 POST DIST\nMVM S GRP=2 V=0 POST DIST\nEND\n");
+    assert!(warnings.len() == 1 && warnings[0].starts_with("line 3"), "{warnings:?}");
+    // A conditional jump can go both ways, so nothing here is out of reach.
+    assert!(findings("JMPC TAG=1 CN1=5\nNOP\nTAG TAG=1\nEND\n").is_empty());
+}
+
+#[test]
 fn a_program_must_fit_its_task() {
     let text = "NOP\nHOME\nhere: END\n";
     let messages_for = |room| {
