@@ -111,11 +111,11 @@ impl Condition {
         if let Some(name) = &self.name {
             let is_known = data.contains_key(name) || has_item(&first["data"], name);
             return (!is_known).then(|| {
+                let text = &self.text;
                 let keys: Vec<&str> = data.keys().map(String::as_str).collect();
                 format!(
-                    "'{}': this report has no key and no item {name}, so this condition may never be true; keys: {}. \
-                     `armctl wait` reads a signal or value of this name",
-                    self.text,
+                    "'{text}': this report has no key and no item {name}, so this condition may never be true; keys: {}. \
+                     `armctl wait '{text}'` reads a signal or value of this name",
                     keys.join(", ")
                 )
             });
@@ -302,7 +302,7 @@ mod tests {
             )
         );
         let told = never("servo_on=true").unwrap();
-        assert!(told.contains("`armctl wait 'servo_on=true'`"), "{told}");
+        assert!(told.contains("keys: running, position. `armctl wait 'servo_on=true'`"), "{told}");
         assert_eq!(never("running=true"), None);
         let items = json!({ "data": { "items": [{ "name": "#27010", "label": "clamp", "value": false }] } });
         assert_eq!(Condition::new("clamp=on").unwrap().check_keys(&items), None, "an item");
