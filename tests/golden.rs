@@ -17,14 +17,14 @@ use armctl_controller::yerc::files::{self, FileName, FileType};
 use armctl_controller::yerc::group::Group;
 use armctl_controller::yerc::payload::{
     Alarm, AlarmKind, AlarmTexts, Axes, AxisNames, BasePosition, CartesianMove, ControllerStatus, CycleMode,
-    ExtendedForm, ExternalPosition, Form, ManagementTime, MoveLayout, Position, PositionKind, PulseMove, SpeedClass,
-    StatusBit, SystemInfo, Text,
+    ExtendedForm, ExternalPosition, Form, ManagementTime, MoveLayout, Pose, Position, PositionKind, PulseMove, Speed,
+    SpeedClass, StatusBit, SystemInfo, Text,
 };
 use armctl_controller::yerc::query::{
-    CancelError, Coordinates, Hold, MoveCartesian, MoveKind, MovePulse, Query, ReadAlarm, ReadAxes, ReadField, ReadIo,
-    ReadIoGroups, ReadManagementTime, ReadPosition, ReadPositionError, ReadStatus, ReadSystemInfo, ReadTorque,
-    ReadVariable, ReadVariables, ResetAlarm, Say, SelectJob, Selection, Servo, SetCycle, SystemPart, TimeCounter,
-    WriteField, WriteIo, WriteIoGroups, WriteRegister, WriteRegisters, WriteVariable, WriteVariables,
+    CancelError, Coordinates, Hold, MoveCartesian, MoveKind, MovePulse, Query, QueryError, ReadAlarm, ReadAxes,
+    ReadField, ReadIo, ReadIoGroups, ReadManagementTime, ReadPosition, ReadPositionError, ReadStatus, ReadSystemInfo,
+    ReadTorque, ReadVariable, ReadVariables, ResetAlarm, Say, SelectJob, Selection, Servo, SetCycle, SystemPart,
+    TimeCounter, WriteField, WriteIo, WriteIoGroups, WriteRegister, WriteRegisters, WriteVariable, WriteVariables,
 };
 use armctl_controller::yerc::request::{Request, RequestError};
 use armctl_controller::yerc::table::service;
@@ -227,32 +227,32 @@ fn write_frames() -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
+fn straight_move() -> CartesianMove {
+    let target = Pose {
+        x: "185.000".parse().unwrap(),
+        z: "125.000".parse().unwrap(),
+        tx: "180.0000".parse().unwrap(),
+        ..Pose::default()
+    };
+    let speed = Speed::Linear("70.0".parse().unwrap());
+    let robot = CartesianMove::of_robot(1, PositionKind::Base, target, speed);
+    CartesianMove { layout: MoveLayout::Words26, tool: 1, ..robot }
+}
+
+#[test]
+fn reserved_bits_of_a_move_are_refused() {
+    let form = CartesianMove { form: Form(1 << 31), ..straight_move() };
+    let extended = CartesianMove { extended: ExtendedForm(1 << 31), ..straight_move() };
+    for target in [form, extended] {
+        let refused = MoveCartesian::new(Dx200, MoveKind::Straight, target);
+        assert!(matches!(refused, Err(QueryError::Reserved { bits: 0x8000_0000, .. })), "{refused:?}");
+    }
+}
+
 fn order_frames() -> Vec<(&'static str, Vec<u8>)> {
     // Full-width characters in the language of the pendant. They mean "robot stopped".
     let message = b"\x83\x8d\x83\x7b\x83\x62\x83\x67\x92\xe2\x8e\x7e";
-    let straight = CartesianMove {
-        layout: MoveLayout::Words26,
-        robot: 1,
-        station: 0,
-        class: SpeedClass::Linear,
-        speed: units::MILLIMETRE_PER_SECOND.parse("70.0").unwrap().unsigned_abs(),
-        coordinate: PositionKind::Base,
-        target: [
-            units::MILLIMETRE.parse("185.000").unwrap(),
-            0,
-            units::MILLIMETRE.parse("125.000").unwrap(),
-            units::DEGREE.parse("180.0000").unwrap(),
-            0,
-            0,
-        ],
-        reserved: [0, 0],
-        form: Form(0),
-        extended: ExtendedForm(0),
-        tool: 1,
-        user: 0,
-        base: [0; 3],
-        station_axes: [0; 6],
-    };
+    let straight = straight_move();
     let link = PulseMove {
         robot: 1,
         station: 0,

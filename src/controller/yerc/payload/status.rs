@@ -188,4 +188,14 @@ mod tests {
         assert_eq!(DATA_1_BITS[7].set, "command remote");
         assert_eq!(DATA_2_BITS[5], Bit { bit: 6, clear: "", set: "servo on" });
     }
+
+    /// FS and DX 3.3.3 and 3.3.21.
+    #[test]
+    fn cycle_modes_have_a_word_and_a_status_bit() {
+        let modes = [CycleMode::Step, CycleMode::Once, CycleMode::Continuous];
+        assert_eq!(modes.map(CycleMode::word), [1, 2, 3]);
+        let cycle = |data_1| ControllerStatus { words: [data_1, 0] }.cycle();
+        assert_eq!([0b001, 0b010, 0b100].map(cycle), modes.map(Some));
+        assert_eq!([0b000, 0b011, 0b111].map(cycle), [None; 3]);
+    }
 }
