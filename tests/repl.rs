@@ -132,7 +132,7 @@ fn moves_a_real_robot_after_the_question_over_a_shared_link() {
     repl.press("home\r");
     repl.wait_for_text("Continue? [y/N]");
     repl.press("n\r");
-    repl.wait_for_text("not confirmed; nothing was changed");
+    repl.wait_for_text("not confirmed; the command changed nothing");
     let session = workspace.data("session list")["sessions"][0].clone();
     assert_eq!((session["pid"].as_u64(), session["link"].as_str()), (Some(repl.child.id().into()), Some("up")));
     assert!(workspace.data(&format!("-t {} toyo status", simulator.url)).is_object());
