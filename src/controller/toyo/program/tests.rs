@@ -217,6 +217,54 @@ fn what_would_stop_a_controller_is_a_warning() {
     assert!(warnings.len() == 1 && warnings[0].starts_with("line 3"), "{warnings:?}");
     // A conditional jump can go both ways, so nothing here is out of reach.
     assert!(findings("JMPC TAG=1 CN1=5\nNOP\nTAG TAG=1\nEND\n").is_empty());
+    // And the RET behind such a jump can be reached without a call.
+    let warnings = findings("JMPC TAG=1 CN1=5\nEND\nTAG TAG=1\nRET\n");
+    assert!(warnings.len() == 1 && warnings[0].contains("without a call"), "{warnings:?}");
+}
+
+#[test]
+fn references_say_how_a_step_uses_an_object() {
+    let text = "CNT CN1=5\nINPC STN=0 PN=2 CN=3\nTIMP TN1=1.5\nCNT+ CN2=1\nCNT- CN2=1\nCWIT CN1=5\n\
+                go: OUT STN=0 PN1=.......1\nJMP TAG=go\nEND\n";
+    let checked = check(text.as_bytes(), MAX_STEPS);
+    let program = checked.program.unwrap_or_else(|| panic!("{:?}", checked.findings));
+    let found: Vec<String> = program
+        .references()
+        .flat_map(|(line, found)| {
+            found.into_iter().map(move |found| format!("{line} {:?} {}", found.role, found.name))
+        })
+        .collect();
+    let expected = [
+        "1 Write CN01",
+        "2 Write CN03",
+        "2 Read IN2",
+        "3 Write TN1",
+        "4 Update CN02",
+        "5 Update CN02",
+        "6 Read CN01",
+        "7 Label go",
+        "7 Write OUT1",
+        "7 Write OUT1.1",
+        "8 Jump go",
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn objects_are_found_under_the_names_that_people_type() {
+    for (typed, name) in [
+        ("cn5", "CN05"),
+        ("out1.3", "OUT1.3"),
+        ("stn1.out2", "STN1.OUT2"),
+        ("t2.5", "T2.5"),
+        ("tag=5", "TAG=005"),
+        ("TAG5", "TAG=005"),
+        // A label keeps its letters.
+        ("tank", "tank"),
+        ("t.x", "t.x"),
+    ] {
+        assert_eq!(name_of(typed), name);
+    }
 }
 
 #[test]
@@ -272,6 +320,11 @@ fn a_part_is_listed_with_its_numbers() {
     let listing = listing(&steps, style, &Rows::new());
     assert_eq!(listing.text, "0010  JMP TAG=003  # tag 003 is step 11\n0011  TAG TAG=003\n0012  NOP\n");
     assert_eq!(listing.left_out, 0);
+    let unread = Unread::from([(1, "no answer".to_owned()), (2, "no answer".to_owned())]);
+    let text = listing_with(&steps, &unread, style, &Rows::new()).text;
+    assert!(text.contains("# steps 11 to 12 were not read: no answer"), "{text}");
+    let text = listing_with(&steps, &Unread::from([(2, "no answer".to_owned())]), style, &Rows::new()).text;
+    assert!(text.contains("# step 12 was not read: no answer"), "{text}");
 }
 
 #[test]

@@ -65,3 +65,22 @@ impl Framer {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn framed(text: &str) -> Option<Framed> {
+        let mut framer = Framer::default();
+        text.bytes().find_map(|byte| framer.push(byte).0)
+    }
+
+    #[test]
+    fn a_block_is_as_long_as_the_longest_one_at_most() {
+        // The length of a block includes its line end, CR LF.
+        let longest = format!("@{}", "A".repeat(MAX_BLOCK_LEN - 3));
+        assert_eq!(framed(&format!("{longest}\r")), Some(Framed::Block(longest.clone())));
+        let why = "it is too long for a block";
+        assert_eq!(framed(&format!("{longest}A\r")), Some(Framed::Garbled { text: longest, why }));
+    }
+}

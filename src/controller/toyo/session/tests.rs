@@ -121,6 +121,41 @@ fn an_ng_before_the_next_answer_refutes_an_ok() {
 }
 
 #[test]
+fn an_ok_after_an_ok_contradicts_nothing() {
+    let mut line = sent("@SPST 0001", false);
+    line.handle(ms(20), b"@OK\r\n");
+    assert_eq!(line.poll(ms(20)), answered("@OK"));
+    line.begin(&request("@STAS SNO=0"), true);
+    assert!(matches!(line.poll(ms(30)), Step::Send(_)));
+    // The same answer again, for example through a device server that repeats, is no contradiction.
+    line.handle(ms(40), b"@OK\r\n@STAS SNO=0 ST1=22 ST2=00\r\n");
+    assert_eq!(line.poll(ms(40)), answered("@STAS SNO=0 ST1=22 ST2=00"));
+    assert!(line.take_refuted().is_none());
+}
+
+#[test]
+fn an_order_is_open_for_a_limited_time() {
+    let second_read = |at: Now| {
+        let mut line = sent("@SPST 0001", false);
+        line.handle(ms(20), b"@OK\r\n");
+        assert_eq!(line.poll(ms(20)), answered("@OK"));
+        let mut ask = |answers: &[u8]| {
+            line.begin(&request("@STAS SNO=0"), true);
+            assert!(matches!(line.poll(at), Step::Send(_)));
+            line.handle(at, answers);
+            line.poll(at)
+        };
+        assert_eq!(ask(b"@STAS SNO=0 ST1=22 ST2=00\r\n"), answered("@STAS SNO=0 ST1=22 ST2=00"));
+        let second = ask(b"@NG\r\n@STAS SNO=0 ST1=22 ST2=00\r\n");
+        (second, line.take_refuted().map(|(order, _)| order.text()))
+    };
+    let refuted = Some("@SPST 0001".to_owned());
+    assert_eq!(second_read(ms(30)), (answered("@STAS SNO=0 ST1=22 ST2=00"), refuted));
+    // Later, the `@NG` is the answer to the read.
+    assert_eq!(second_read(ms(20) + CONTRADICTION_WINDOW), (answered("@NG"), None));
+}
+
+#[test]
 fn an_order_is_open_until_a_read_is_answered() {
     for (first, other) in [("@OK", "@NG"), ("@NG", "@OK")] {
         for row in ROWS.iter().filter(|row| row.is_order()) {
