@@ -230,9 +230,7 @@ fn references_say_how_a_step_uses_an_object() {
     let program = checked.program.unwrap_or_else(|| panic!("{:?}", checked.findings));
     let found: Vec<String> = program
         .references()
-        .flat_map(|(line, found)| {
-            found.into_iter().map(move |found| format!("{line} {:?} {}", found.role, found.name))
-        })
+        .flat_map(|(line, found)| found.into_iter().map(move |found| format!("{line} {:?} {}", found.role, found.name)))
         .collect();
     let expected = [
         "1 Write CN01",
