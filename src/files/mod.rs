@@ -174,20 +174,21 @@ pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
 /// Removes the drafts of killed processes. No process has locked these drafts. Returns how many drafts were removed,
 /// and how many could not be removed.
 pub fn sweep(folder: &Path) -> (usize, usize) {
-    let drafts = abandoned_drafts(folder);
-    // A draft that cannot be removed does no harm.
-    let removed = drafts.iter().filter(|path| std::fs::remove_file(path).is_ok()).count();
-    (removed, drafts.len() - removed)
-}
-
-fn abandoned_drafts(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let drafts = entries.map(|entry| entry.path()).filter(|path| {
+    let (mut removed, mut left) = (0, 0);
+    for path in std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        name.strip_prefix(DRAFT.0).is_some_and(|rest| rest.ends_with(DRAFT.1))
-    });
-    let is_dead = |path: &PathBuf| path.symlink_metadata().is_ok_and(|found| found.is_file()) && is_abandoned(path);
-    drafts.filter(is_dead).collect()
+        let is_draft = name.strip_prefix(DRAFT.0).is_some_and(|rest| rest.ends_with(DRAFT.1))
+            && path.symlink_metadata().is_ok_and(|found| found.is_file());
+        // The lock lasts until the draft is removed, so a process that has just created the draft cannot lock it in
+        // between, and creates another one.
+        if let Some(_lock) = is_draft.then(|| lock_abandoned(&path)).flatten() {
+            match std::fs::remove_file(&path) {
+                Err(error) if error.kind() != ErrorKind::NotFound => left += 1,
+                _ => removed += 1,
+            }
+        }
+    }
+    (removed, left)
 }
 
 /// Replaces the content of a file. Creates the file and its folder if they do not exist. An existing file keeps its
@@ -316,12 +317,12 @@ mod exclusive {
         })
     }
 
-    /// Whether no process has the file open for writing.
-    pub fn is_free(path: &Path) -> bool {
+    /// Opens a file that no process has open for writing.
+    pub fn open_free(path: &Path) -> io::Result<File> {
         const FILE_SHARE_READ: u32 = 1;
         const FILE_SHARE_DELETE: u32 = 4;
 
-        OpenOptions::new().read(true).share_mode(FILE_SHARE_READ | FILE_SHARE_DELETE).open(path).is_ok()
+        OpenOptions::new().read(true).share_mode(FILE_SHARE_READ | FILE_SHARE_DELETE).open(path)
     }
 }
 
@@ -339,17 +340,23 @@ pub fn lock(_: &File) -> bool {
 }
 
 /// Whether the process that marked a file with [`lock`] has ended. `false` if the file cannot be opened.
-#[cfg(unix)]
 pub fn is_abandoned(path: &Path) -> bool {
-    // A shared lock, so that two processes can check at the same time.
-    let is_free = |file: File| rustix::fs::flock(&file, rustix::fs::FlockOperation::NonBlockingLockShared).is_ok();
-    open(path).is_ok_and(is_free)
+    lock_abandoned(path).is_some()
 }
 
-/// Whether the process that marked a file with [`lock`] has ended. `false` if the file cannot be opened.
+/// Locks a file whose process has ended, until the returned file is closed. `None` if the process is running, or the
+/// file cannot be opened.
+#[cfg(unix)]
+fn lock_abandoned(path: &Path) -> Option<File> {
+    // A shared lock, so that two processes can check at the same time.
+    open(path).ok().filter(|file| rustix::fs::flock(file, rustix::fs::FlockOperation::NonBlockingLockShared).is_ok())
+}
+
+/// Opens a file whose process has ended. Until the returned file is closed, no process can open it for writing. `None`
+/// if the process is running, or the file cannot be opened.
 #[cfg(windows)]
-pub fn is_abandoned(path: &Path) -> bool {
-    exclusive::is_free(path)
+fn lock_abandoned(path: &Path) -> Option<File> {
+    exclusive::open_free(path).ok()
 }
 
 /// Whether an open file still has a name in a folder.
@@ -408,6 +415,16 @@ mod tests {
         assert!(living.path().exists() && !folder.path().join(".armctl-dead.part").exists());
         drop(living);
         assert_eq!(names(), 2);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_draft_that_a_sweep_is_removing_cannot_be_locked() {
+        let draft = tempfile::NamedTempFile::new().unwrap();
+        let sweeping = lock_abandoned(draft.path()).unwrap();
+        assert!(!lock(draft.as_file()));
+        drop(sweeping);
+        assert!(lock(draft.as_file()) && lock_abandoned(draft.path()).is_none());
     }
 
     #[test]
