@@ -278,18 +278,19 @@ pub fn update(
     let mut left: HashMap<String, &Vec<String>> =
         rows.iter().filter_map(|row| Some((canonical(row.first()?), row))).collect();
     let text = String::from_utf8_lossy(bytes);
-    let end = if text.contains("\r\n") { "\r\n" } else { "\n" };
+    let end_of = |line: &str| if line.trim_end_matches('\n').ends_with('\r') { "\r\n" } else { "\n" };
+    let end = text.split_inclusive('\n').next().map_or("\n", end_of);
     let mut updated = String::with_capacity(text.len());
     let mut old_rows = sheet.rows.iter().peekable();
     for (index, line) in text.split_inclusive('\n').enumerate() {
         let old = old_rows.next_if(|row| row.line == index + 1);
         match old.and_then(|old| Some((old, left.remove(&canonical(old.text(key)))?))) {
-            Some((old, row)) => updated.extend([&cells(row, &|at| old.whole(at).to_owned()), end]),
+            Some((old, row)) => updated.extend([&cells(row, &|at| old.whole(at).to_owned()), end_of(line)]),
             None => updated.push_str(line),
         }
     }
     if !updated.ends_with('\n') {
-        updated.push_str(end);
+        updated.push_str(if updated.ends_with('\r') { "\n" } else { end });
     }
     for row in rows.iter().filter(|row| row.first().is_some_and(|key| left.contains_key(&canonical(key)))) {
         updated.extend([&cells(row, &|_| String::new()), end]);
@@ -454,6 +455,9 @@ mod tests {
         assert_eq!(updated(old, &[["1", "5.0", "2.00"]]).unwrap(), old);
         assert_eq!(updated(old, &[]).unwrap(), old);
         assert_eq!(updated("x_mm\n1\n", &[]), None);
+        // Each row keeps its line end. A new row gets that of the first line.
+        let mixed = updated("point,y_mm\n1,2\r\n3,4\r", &[["1", "0", "5"], ["9", "0", "6"]]).unwrap();
+        assert_eq!(mixed, "point,y_mm\n1,5\r\n3,4\r\n9,6\n");
     }
 
     #[test]

@@ -4,7 +4,11 @@ use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, TomlError, Value, value
 
 /// Content of an inventory that can be edited.
 #[derive(Debug, Clone)]
-pub struct Document(DocumentMut);
+pub struct Document {
+    toml: DocumentMut,
+    /// Whether lines end with CR LF, as Windows editors write them.
+    has_crlf: bool,
+}
 
 /// Reason why the inventory cannot be edited.
 pub type DocumentError = &'static str;
@@ -15,13 +19,15 @@ const NO_ENTRY: DocumentError = "the robot has no [[robot]] table";
 impl Document {
     /// Parses the content of an inventory.
     pub fn parse(text: &str) -> Result<Self, TomlError> {
-        text.parse().map(Self)
+        // toml_edit would write each CR LF as LF.
+        let has_crlf = text.split_inclusive('\n').next().is_some_and(|line| line.ends_with("\r\n"));
+        Ok(Self { toml: text.replace("\r\n", "\n").parse()?, has_crlf })
     }
 
     /// Appends an entry. If it is the first entry, it becomes the default.
     pub fn add(&mut self, entry: Table, is_default: bool) -> Result<(), DocumentError> {
         let name = entry.get("name").cloned().unwrap_or_default();
-        let list = self.0.entry("robot").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
+        let list = self.toml.entry("robot").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
         let list = list.as_array_of_tables_mut().ok_or(NO_LIST)?;
         list.push(entry);
         if is_default || list.len() == 1 {
@@ -58,8 +64,8 @@ impl Document {
 
     /// Sets the default robot.
     pub fn set_default(&mut self, name: &str) {
-        let is_first = self.0.as_table().get_values().is_empty();
-        insert(self.0.as_table_mut(), "default", name.into());
+        let is_first = self.toml.as_table().get_values().is_empty();
+        insert(self.toml.as_table_mut(), "default", name.into());
         if is_first {
             self.keep_header();
         }
@@ -72,7 +78,7 @@ impl Document {
         let Some(end) = above.rfind("\n\n").filter(|_| above.contains('#')) else { return };
         let (head, own) = above.split_at(end + 1);
         first.decor_mut().set_prefix(own);
-        if let Some(mut key) = self.0.as_table_mut().key_mut("default") {
+        if let Some(mut key) = self.toml.as_table_mut().key_mut("default") {
             key.leaf_decor_mut().set_prefix(format!("{head}\n"));
         }
     }
@@ -90,12 +96,12 @@ impl Document {
     }
 
     fn default(&self) -> Option<&str> {
-        self.0.get("default").and_then(Item::as_str)
+        self.toml.get("default").and_then(Item::as_str)
     }
 
     /// Removes the default robot, but keeps the comment above it. The comment may be the header comment of the file.
     pub fn remove_default(&mut self) {
-        let Some((key, _)) = self.0.as_table_mut().remove_entry("default") else { return };
+        let Some((key, _)) = self.toml.as_table_mut().remove_entry("default") else { return };
         let above = key.leaf_decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
         if above.contains('#') {
             self.insert_before_table(None, above);
@@ -103,7 +109,7 @@ impl Document {
     }
 
     fn list(&mut self) -> Result<&mut ArrayOfTables, DocumentError> {
-        self.0.get_mut("robot").and_then(Item::as_array_of_tables_mut).ok_or(NO_LIST)
+        self.toml.get_mut("robot").and_then(Item::as_array_of_tables_mut).ok_or(NO_LIST)
     }
 
     fn entry(&mut self, name: &str) -> Result<&mut Table, DocumentError> {
@@ -111,7 +117,7 @@ impl Document {
     }
 
     fn tables(&mut self) -> impl Iterator<Item = &mut Table> {
-        self.0.iter_mut().flat_map(|(_, item)| match item {
+        self.toml.iter_mut().flat_map(|(_, item)| match item {
             Item::Table(table) => vec![table],
             Item::ArrayOfTables(list) => list.iter_mut().collect(),
             _ => Vec::new(),
@@ -126,15 +132,15 @@ impl Document {
             let whole = format!("{text}{own}");
             next.decor_mut().set_prefix(whole);
         } else {
-            let whole = format!("{text}{}", self.0.trailing().as_str().unwrap_or_default());
-            self.0.set_trailing(whole);
+            let whole = format!("{text}{}", self.toml.trailing().as_str().unwrap_or_default());
+            self.toml.set_trailing(whole);
         }
     }
 }
 
 impl std::fmt::Display for Document {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        self.0.fmt(f)
+        if self.has_crlf { f.write_str(&self.toml.to_string().replace('\n', "\r\n")) } else { self.toml.fmt(f) }
     }
 }
 
@@ -291,5 +297,17 @@ name = \"b\"
         none.add(entry, false).unwrap();
         assert!(none.to_string().starts_with("default = \"c\""), "{none}");
         assert!(Document::parse("robot = 1").unwrap().add(Table::new(), false).is_err());
+    }
+
+    #[test]
+    fn keeps_the_line_ends_of_windows() {
+        let mut document = Document::parse(&TEXT.replace('\n', "\r\n")).unwrap();
+        document.rename("a", "press").unwrap();
+        document.remove("b").unwrap();
+        let expected = changed(|document| {
+            document.rename("a", "press").unwrap();
+            document.remove("b").unwrap();
+        });
+        assert_eq!(document.to_string(), expected.replace('\n', "\r\n"));
     }
 }

@@ -403,7 +403,7 @@ fn request_block_text(service: Service, block: &dcp::Block) -> String {
     let value = if service == Service::Set { block.data.get(2..).unwrap_or_default() } else { &block.data[..] };
     match block.setting {
         Setting::NAME | Setting::ALIAS | Setting::STATION_TYPE if !value.is_empty() => {
-            format!("{name} '{}'", String::from_utf8_lossy(value))
+            format!("{name} '{}'", value.escape_ascii())
         }
         Setting::IP => match IpSuite::parse(value) {
             Ok(suite) => format!("{name} {} mask {}", suite.address, suite.mask),

@@ -172,8 +172,8 @@ fn count32(count: usize) -> u32 {
 
 /// Decodes the text of a fixed-length field, without trailing blanks and zeros.
 fn text(bytes: &[u8]) -> String {
-    let text = String::from_utf8_lossy(bytes);
-    text.trim_end_matches(['\0', ' ']).chars().filter(|c| !c.is_control()).collect()
+    let text: String = String::from_utf8_lossy(bytes).chars().filter(|c| !c.is_control()).collect();
+    text.trim_end_matches(' ').to_owned()
 }
 
 #[cfg(test)]
