@@ -49,9 +49,9 @@ struct Listed {
 
 impl Report for Listing {
     fn view(&self) -> View {
-        let mut table = Table::new(&["job", "state"], "no jobs");
+        let mut table = Table::new(&["job", "selected"], "no jobs");
         for Listed { name, selected } in &self.jobs {
-            table.row([name.name.as_str().into(), Cell::from(if *selected { "selected" } else { "" })]);
+            table.row([name.name.as_str().into(), Cell::from(if *selected { "yes" } else { "" })]);
         }
         View::table(table)
     }

@@ -226,7 +226,9 @@ pub async fn read_points(
     mut gap: Option<usize>,
 ) -> Result<Text> {
     let table = PointSheet::default();
-    let mut progress = screen.items_progress("reading points", numbers.len() as u64);
+    // A backup reads the points of each file in turn.
+    let (first, last) = (numbers.first().copied().unwrap_or_default(), numbers.last().copied().unwrap_or_default());
+    let mut progress = screen.items_progress(&format!("reading points {first} to {last}"), numbers.len() as u64);
     let (mut asked, mut found, mut rest) = (Vec::new(), Vec::new(), numbers);
     while let Some(first) = rest.first() {
         let is_over = gap.is_some_and(|gap| gap >= MAX_UNDEFINED_RUN);
