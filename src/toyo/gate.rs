@@ -1,5 +1,7 @@
 //! Tests of every command: its risk, a missing confirmation, and whether a dry run shows the blocks that are sent.
 
+use std::sync::OnceLock;
+
 use serde_json::Value;
 
 use super::testing::{Bench, Fault, ReceivedBlocks, gate_input, plan, text};
@@ -61,7 +63,7 @@ const STATE: &str = "origin = true\nhost = false\ncard = \"empty\"\n\
     2 = [\"HOME\", \"SPD V=01\", \"SPD V=02\", \"END\", \"END\"] }\n";
 
 /// Command lines that add data to the start state.
-const BEFORE: [&str; 9] = [
+const BEFORE: [&str; 10] = [
     "point set 2 7 7 7 7",
     "mvm set 2 pieces1=4",
     "torque-table set 2 load=2",
@@ -71,6 +73,7 @@ const BEFORE: [&str; 9] = [
     "palletizing set 1 end 5",
     "palletizing set 2 end 6",
     "mvm set 1 pieces1=3 approach-z=5",
+    "point set 1 9 9 9 9",
 ];
 
 /// A controller with user data, a folder with files, and the blocks that the controller receives from now on.
@@ -87,17 +90,35 @@ fn prepared(line: &str) -> (Bench, ReceivedBlocks, tempfile::TempDir) {
     write("programs.csv", "name,loops\n1,9\n");
     write("counts.csv", "name,count\nCN01,5\n");
     write("program.txt", "TAG TAG=005\nSPD V=05\nEND\n");
-    let (mut bench, received) = Bench::with_faults(STATE, |_, _| Fault::None);
-    if line.starts_with("restore") || line.starts_with("diff") {
-        let backup = folder.path().join("backup");
-        bench.data(&["backup", backup.to_str().unwrap()]);
+    if !line.starts_with("restore") && !line.starts_with("diff") {
+        let (bench, received) = Bench::after(STATE, changes());
+        return (bench, received, folder);
     }
-    for line in BEFORE.iter().chain(&["point set 1 9 9 9 9"]) {
+    let (mut bench, received) = Bench::with_faults(STATE, |_, _| Fault::None);
+    let backup = folder.path().join("backup");
+    bench.data(&["backup", backup.to_str().unwrap()]);
+    change(&mut bench);
+    received.borrow_mut().clear();
+    (bench, received, folder)
+}
+
+fn change(bench: &mut Bench) {
+    for line in BEFORE {
         bench.data(&line.split(' ').collect::<Vec<_>>());
     }
     bench.end();
-    received.borrow_mut().clear();
-    (bench, received, folder)
+}
+
+/// Blocks that write the data of [`BEFORE`].
+fn changes() -> &'static [String] {
+    static BLOCKS: OnceLock<Vec<String>> = OnceLock::new();
+
+    BLOCKS.get_or_init(|| {
+        let (mut bench, received) = Bench::with_faults(STATE, |_, _| Fault::None);
+        change(&mut bench);
+        let received = received.borrow();
+        received.iter().filter(|block| risk(block) >= Write).cloned().collect()
+    })
 }
 
 fn words(line: &str, folder: &tempfile::TempDir) -> Vec<String> {

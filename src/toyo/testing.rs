@@ -163,7 +163,23 @@ impl Bench {
         state: &str,
         fault: impl FnMut(&str, usize) -> Fault + Send + 'static,
     ) -> (Self, ReceivedBlocks) {
-        let controller = Simulated::new(Start::parse(state).expect("a start state"));
+        Self::over(Simulated::new(Start::parse(state).expect("a start state")), fault)
+    }
+
+    /// A simulator in a start state (TOML) that has received these blocks.
+    pub(super) fn after(state: &str, blocks: &[String]) -> (Self, ReceivedBlocks) {
+        let mut controller = Simulated::new(Start::parse(state).expect("a start state"));
+        for block in blocks {
+            controller.receive(Duration::ZERO, 0, format!("{block}\r\n").as_bytes());
+            while controller.transmit(Duration::ZERO).is_some() {}
+        }
+        Self::over(controller, |_, _| Fault::None)
+    }
+
+    fn over(
+        controller: Simulated,
+        fault: impl FnMut(&str, usize) -> Fault + Send + 'static,
+    ) -> (Self, ReceivedBlocks) {
         let received = ReceivedBlocks::default();
         let (incoming, answers) = (Vec::new(), VecDeque::new());
         let peer = Box::new(FaultyLine {
