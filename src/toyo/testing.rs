@@ -176,10 +176,7 @@ impl Bench {
         Self::over(controller, |_, _| Fault::None)
     }
 
-    fn over(
-        controller: Simulated,
-        fault: impl FnMut(&str, usize) -> Fault + Send + 'static,
-    ) -> (Self, ReceivedBlocks) {
+    fn over(controller: Simulated, fault: impl FnMut(&str, usize) -> Fault + Send + 'static) -> (Self, ReceivedBlocks) {
         let received = ReceivedBlocks::default();
         let (incoming, answers) = (Vec::new(), VecDeque::new());
         let peer = Box::new(FaultyLine {
