@@ -420,7 +420,7 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn a_draft_that_a_sweep_is_removing_cannot_be_locked() {
-        let draft = tempfile::NamedTempFile::new().unwrap();
+        let draft = NamedTempFile::new().unwrap();
         let sweeping = lock_abandoned(draft.path()).unwrap();
         assert!(!lock(draft.as_file()));
         drop(sweeping);
