@@ -131,7 +131,8 @@ impl Reader<'_> {
         let at = cursor.place();
         let text = cursor.word();
         let steps = self.read.steps.len();
-        let Ok(number) = text.parse::<usize>() else {
+        // No program has as many steps as this type can count.
+        let Ok(number) = text.parse::<u16>().map(usize::from) else {
             self.findings.error(at, format!("'{}' is not a valid step number", excerpt(text)), None);
             return;
         };
