@@ -99,6 +99,23 @@ fn selects_a_fixed_module_once() {
 }
 
 #[test]
+fn a_referenced_submodule_is_found_by_its_id() {
+    let listed = "<SubmoduleItem ID=\"A\" SubmoduleIdentNumber=\"7\"><IOData/></SubmoduleItem>\
+                  <SubmoduleItem ID=\"B\" SubmoduleIdentNumber=\"8\"><IOData/></SubmoduleItem>";
+    let refer = |id: &str| {
+        let used = format!("<UseableSubmodules><SubmoduleItemRef SubmoduleItemTarget=\"{id}\" FixedInSubslots=\"3\"/>");
+        let file = OWN.replace("<VirtualSubmoduleList/>", &format!("{used}</UseableSubmodules>"));
+        Gsdml::parse(
+            file.replace("</ModuleList>", &format!("</ModuleList><SubmoduleList>{listed}</SubmoduleList>")).as_bytes(),
+        )
+    };
+    let gsdml = refer("B").unwrap();
+    let [found] = &gsdml.heads[0].modules[1].module.submodules[..] else { panic!("{gsdml:?}") };
+    assert_eq!((found.subslot, found.ident), (3, 8));
+    assert!(refer("C").unwrap_err().problem.contains("SubmoduleItem 'C' is missing"));
+}
+
+#[test]
 fn errors_have_line_and_element() {
     let cases = [
         ("VendorID=\"0x0123\"", "", 3, "DeviceIdentity", "VendorID is missing"),
