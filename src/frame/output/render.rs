@@ -202,12 +202,65 @@ impl Layout {
 
     /// Renders the next rows. The first piece includes the header.
     pub fn piece(&mut self, rows: &[Vec<Cell>], color: bool) -> String {
+        let mut text = String::new();
+        if !std::mem::replace(&mut self.has_header, true) {
+            self.push_grid(&mut text, &[], true, color);
+        }
+        let mut rest = rows;
+        while !rest.is_empty() {
+            let simple = rest.iter().take_while(|row| self.push_simple(&mut text, row, color)).count();
+            rest = &rest[simple..];
+            let others = rest.iter().take_while(|row| !self.is_simple(row, color)).count();
+            if others > 0 {
+                self.push_grid(&mut text, &rest[..others], false, color);
+            }
+            rest = &rest[others..];
+        }
+        text
+    }
+
+    /// Whether each cell of a row is printable ASCII without a color, and fits in one line.
+    fn is_simple(&self, row: &[Cell], color: bool) -> bool {
+        let is_plain = |cell: &Cell| !color || cell.tone == Tone::Plain;
+        row.len() == self.columns.len()
+            && row.iter().zip(&self.columns).all(|(cell, column)| {
+                cell.text.len() <= column.width
+                    && is_plain(cell)
+                    && cell.text.bytes().all(|byte| (0x20..0x7F).contains(&byte))
+            })
+    }
+
+    /// Appends a simple row. Returns whether the row is simple. Most rows of a long table are, and this takes a small
+    /// part of the time of a grid.
+    fn push_simple(&self, text: &mut String, row: &[Cell], color: bool) -> bool {
+        if !self.is_simple(row, color) {
+            return false;
+        }
+        let mut blanks = 0;
+        let push_blanks = |text: &mut String, count: usize| text.extend(std::iter::repeat_n(' ', count));
+        for (cell, column) in row.iter().zip(&self.columns) {
+            let missing = column.width - cell.text.len();
+            let (before, after) = if cell.is_number { (missing, 0) } else { (0, missing) };
+            let shown = cell.text.trim_end();
+            blanks += before;
+            if !shown.is_empty() {
+                push_blanks(text, std::mem::take(&mut blanks));
+                text.push_str(shown);
+            }
+            blanks += cell.text.len() - shown.len() + after + usize::from(PADDING);
+        }
+        text.push('\n');
+        true
+    }
+
+    /// Appends the header, rows of more than one line, and rows with colors.
+    fn push_grid(&self, text: &mut String, rows: &[Vec<Cell>], has_header: bool, color: bool) {
         let header = |(name, column): (&&str, &Column)| {
             let cell = comfy_table::Cell::new(name.to_uppercase()).add_attribute(Attribute::Bold);
             if column.is_number { cell.set_alignment(CellAlignment::Right) } else { cell }
         };
         let mut grid = grid(self.width, color);
-        if !std::mem::replace(&mut self.has_header, true) {
+        if has_header {
             grid.set_header(self.names.iter().zip(&self.columns).map(header).collect::<Vec<_>>());
         }
         for row in rows {
@@ -218,7 +271,10 @@ impl Layout {
             let width = u16::try_from(*width).unwrap_or(u16::MAX).saturating_add(PADDING);
             column.set_padding((0, PADDING)).set_constraint(ColumnConstraint::Absolute(Width::Fixed(width)));
         }
-        grid.lines().flat_map(|line| [line.trim_end(), "\n"].map(ToOwned::to_owned)).collect()
+        for line in grid.lines() {
+            text.push_str(line.trim_end());
+            text.push('\n');
+        }
     }
 }
 
@@ -363,6 +419,8 @@ fn csv_cell(cell: &Cell) -> String {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     fn sample() -> View {
@@ -393,6 +451,29 @@ mod tests {
         let (short, long) = (table(LONG_VALUE), table(2 * LONG_VALUE + 10));
         assert!(long.starts_with(&short), "{}\n{}", &short[..600], &long[..600]);
         assert!(long.lines().all(|line| line.len() <= 60) && long.lines().count() > short.lines().count());
+    }
+
+    proptest! {
+        #[test]
+        fn a_simple_row_looks_like_a_row_of_the_grid(
+            rows in prop::collection::vec(prop::collection::vec(("[ -~]{0,12}|[a-z ]{20,40}|é", any::<bool>(), any::<bool>()), 3), 1..9),
+            width in 20u16..90,
+            color in any::<bool>(),
+        ) {
+            let cell = |(text, is_number, is_bad): (String, bool, bool)| {
+                let cell = if is_number { Cell::number(text) } else { text.into() };
+                cell.tone(if is_bad { Tone::Bad } else { Tone::Plain })
+            };
+            let rows: Vec<Vec<Cell>> = rows.into_iter().map(|row| row.into_iter().map(cell).collect()).collect();
+            let mut layout = Layout::new(&["a", "b", "c"]);
+            for row in &rows {
+                layout.measure(row);
+            }
+            let mut layout = layout.fit_width(width);
+            let mut of_grid = String::new();
+            layout.push_grid(&mut of_grid, &rows, true, color);
+            prop_assert_eq!(layout.piece(&rows, color), of_grid);
+        }
     }
 
     /// An algorithm with quadratic time would need hours for this word.
