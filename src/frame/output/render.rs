@@ -206,55 +206,65 @@ impl Layout {
         if !std::mem::replace(&mut self.has_header, true) {
             self.push_grid(&mut text, &[], true, color);
         }
-        let mut rest = rows;
-        while !rest.is_empty() {
-            let simple = rest.iter().take_while(|row| self.push_simple(&mut text, row, color)).count();
-            rest = &rest[simple..];
-            let others = rest.iter().take_while(|row| !self.is_simple(row, color)).count();
-            if others > 0 {
-                self.push_grid(&mut text, &rest[..others], false, color);
-            }
-            rest = &rest[others..];
+        let mut others = 0;
+        for (at, row) in rows.iter().enumerate() {
+            let Some(cells) = self.simple_cells(row, color) else {
+                others += 1;
+                continue;
+            };
+            self.push_grid(&mut text, &rows[at - others..at], false, color);
+            others = 0;
+            self.push_simple(&mut text, row, &cells);
         }
+        self.push_grid(&mut text, &rows[rows.len() - others..], false, color);
         text
     }
 
-    /// Whether each cell of a row is printable ASCII without a color, and fits in one line.
-    fn is_simple(&self, row: &[Cell], color: bool) -> bool {
-        let is_plain = |cell: &Cell| !color || cell.tone == Tone::Plain;
-        row.len() == self.columns.len()
-            && row.iter().zip(&self.columns).all(|(cell, column)| {
-                cell.text.len() <= column.width
-                    && is_plain(cell)
-                    && cell.text.bytes().all(|byte| (0x20..0x7F).contains(&byte))
-            })
+    /// Returns the texts of a row in the lines of their columns, if all are printable ASCII without a color.
+    fn simple_cells<'c>(&self, row: &'c [Cell], color: bool) -> Option<Vec<Cow<'c, str>>> {
+        let cell = |(cell, column): (&'c Cell, &Column)| {
+            let is_plain = !color || cell.tone == Tone::Plain;
+            let is_simple = is_plain && cell.text.bytes().all(|byte| (0x20..0x7F).contains(&byte));
+            let shown = is_simple.then(|| folded(Cow::Borrowed(&cell.text), column.width))?;
+            shown.split('\n').all(|line| line.len() <= column.width).then_some(shown)
+        };
+        if row.len() == self.columns.len() { row.iter().zip(&self.columns).map(cell).collect() } else { None }
     }
 
-    /// Appends a simple row. Returns whether the row is simple. Most rows of a long table are, and this takes a small
-    /// part of the time of a grid.
-    fn push_simple(&self, text: &mut String, row: &[Cell], color: bool) -> bool {
-        if !self.is_simple(row, color) {
-            return false;
-        }
-        let mut blanks = 0;
-        let push_blanks = |text: &mut String, count: usize| text.extend(std::iter::repeat_n(' ', count));
-        for (cell, column) in row.iter().zip(&self.columns) {
-            let missing = column.width - cell.text.len();
-            let (before, after) = if cell.is_number { (missing, 0) } else { (0, missing) };
-            let shown = cell.text.trim_end();
-            blanks += before;
-            if !shown.is_empty() {
-                push_blanks(text, std::mem::take(&mut blanks));
-                text.push_str(shown);
+    /// Appends a row of simple cells. Most rows of a long table are simple, and this takes a small part of the time of
+    /// a grid.
+    fn push_simple(&self, text: &mut String, row: &[Cell], cells: &[Cow<'_, str>]) {
+        let mut lines: Vec<_> = cells.iter().map(|cell| cell.split('\n')).collect();
+        loop {
+            let (mut is_over, mut blanks) = (true, 0);
+            let start = text.len();
+            for ((lines, cell), column) in lines.iter_mut().zip(row).zip(&self.columns) {
+                let next = lines.next();
+                is_over &= next.is_none();
+                let whole = next.unwrap_or_default();
+                let shown = whole.trim_end();
+                let missing = column.width - whole.len();
+                let before = if cell.is_number { missing } else { 0 };
+                if !shown.is_empty() {
+                    text.extend(std::iter::repeat_n(' ', blanks + before));
+                    text.push_str(shown);
+                    blanks = 0;
+                }
+                let used = if shown.is_empty() { 0 } else { before + shown.len() };
+                blanks += column.width - used + usize::from(PADDING);
             }
-            blanks += cell.text.len() - shown.len() + after + usize::from(PADDING);
+            if is_over {
+                return text.truncate(start);
+            }
+            text.push('\n');
         }
-        text.push('\n');
-        true
     }
 
-    /// Appends the header, rows of more than one line, and rows with colors.
+    /// Appends the header, and any rows.
     fn push_grid(&self, text: &mut String, rows: &[Vec<Cell>], has_header: bool, color: bool) {
+        if rows.is_empty() && !has_header {
+            return;
+        }
         let header = |(name, column): (&&str, &Column)| {
             let cell = comfy_table::Cell::new(name.to_uppercase()).add_attribute(Attribute::Bold);
             if column.is_number { cell.set_alignment(CellAlignment::Right) } else { cell }
