@@ -50,7 +50,7 @@ impl StreamServer {
     ) -> io::Result<(Self, SocketAddr)> {
         let listener = TcpListener::bind(address).await?;
         let local = listener.local_addr()?;
-        Ok((Self::new(End::Tcp(Tcp { listener, client: None, unsent: Vec::new() }), pace, faults), local))
+        Ok((Self::new(End::Tcp(Tcp { listener, client: None, second: None, unsent: Vec::new() }), pace, faults), local))
     }
 
     /// Creates a pseudo-terminal. Returns it with the path of its port.
@@ -147,6 +147,8 @@ impl End {
 struct Tcp {
     listener: TcpListener,
     client: Option<TcpStream>,
+    /// A client that connected while another one seemed to be connected.
+    second: Option<TcpStream>,
     /// Bytes that the client has not accepted yet.
     unsent: Vec<u8>,
 }
@@ -155,11 +157,30 @@ impl Tcp {
     async fn event(&mut self, buffer: &mut [u8]) -> io::Result<Event> {
         loop {
             let Some(client) = &mut self.client else {
-                let client = accept(&self.listener).await?;
+                let client = match self.second.take() {
+                    Some(client) => client,
+                    None => accept(&self.listener).await?,
+                };
                 // `None` if the client has already disconnected.
                 self.client = client.set_nodelay(true).is_ok().then_some(client);
                 return Ok(Event::Changed);
             };
+            if self.second.is_some() {
+                // The listener can be ready before the runtime has asked the operating system about the first client,
+                // which may have ended before. The runtime asks during this wait.
+                tokio::task::yield_now().await;
+                match client.try_read(buffer) {
+                    Err(error) if error.kind() == io::ErrorKind::WouldBlock => self.second = None,
+                    Ok(len) if len > 0 => {
+                        self.second = None;
+                        return Ok(Event::Sent(len));
+                    }
+                    _ => {
+                        self.leave();
+                        return Ok(Event::Changed);
+                    }
+                }
+            }
             let (mut reading, mut writing) = client.split();
             tokio::select! {
                 // Because of `biased`, the server handles the end of a client before it accepts the next client.
@@ -176,7 +197,7 @@ impl Tcp {
                     Ok(len) => drop(self.unsent.drain(..len)),
                     Err(_) => self.leave(),
                 },
-                second = accept(&self.listener) => drop(second?),
+                second = accept(&self.listener) => self.second = Some(second?),
             }
         }
     }
