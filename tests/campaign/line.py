@@ -171,7 +171,9 @@ class UdpPeer:
         self.port, self.address = port, address
 
     def send(self, data):
-        self.port.transport.sendto(data, self.address)
+        # A delayed answer can be due after the end of its controller.
+        if not self.port.transport.is_closing():
+            self.port.transport.sendto(data, self.address)
 
     def send_forged(self, data):
         self.port.forger.sendto(data, self.address)

@@ -132,7 +132,7 @@ fn is_hidden(character: char) -> bool {
 
 /// Whether the text consists only of printable ASCII. The fold looks at all bytes, so that the compiler can compare
 /// several at once.
-fn is_printable_ascii(text: &str) -> bool {
+pub fn is_printable_ascii(text: &str) -> bool {
     text.bytes().fold(true, |all, byte| all & (0x20..0x7F).contains(&byte))
 }
 

@@ -80,7 +80,7 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
 /// its own line.
 fn fields_text(fields: &[(&'static str, Cell)], width: u16, color: bool) -> String {
     const INDENT: usize = 2;
-    let names = fields.iter().map(|(name, _)| measure_text_width(name)).max().unwrap_or_default();
+    let names = fields.iter().map(|(name, _)| width_of(name)).max().unwrap_or_default();
     let padding = usize::from(PADDING);
     let width = usize::from(width);
     let room = width.saturating_sub(names + 2 * padding).max(MIN_WORD);
@@ -90,7 +90,7 @@ fn fields_text(fields: &[(&'static str, Cell)], width: u16, color: bool) -> Stri
         let is_beside = least(&text) <= room;
         let (indent, room) = if is_beside { (names + padding, room) } else { (INDENT, width.saturating_sub(INDENT)) };
         let name = if color {
-            format!("\x1b[2m{name}\x1b[0m{:1$}", "", names - measure_text_width(name))
+            format!("\x1b[2m{name}\x1b[0m{:1$}", "", names - width_of(name))
         } else {
             format!("{name:names$}")
         };
@@ -138,11 +138,25 @@ struct Column {
     is_whole: bool,
 }
 
+impl Column {
+    fn measure(&mut self, cell: &Cell) {
+        let text = escape::line(&cell.text);
+        let width = width_of(&text);
+        self.width = self.width.max(width);
+        // A word has at least as many bytes as columns. Most rows have no longer word than the rows before.
+        if cell.is_whole || text.split(' ').any(|word| word.len() > self.min_width) {
+            self.min_width = self.min_width.max(if cell.is_whole { width } else { least(&text) });
+        }
+        self.is_number = self.is_number && (cell.is_number || cell.text == "-");
+        self.is_whole = self.is_whole || cell.is_whole;
+    }
+}
+
 impl Layout {
     /// Creates a layout for columns with these names.
     pub fn new(names: &[&'static str]) -> Self {
         let column = |name: &&str| {
-            let (width, least) = (measure_text_width(name), least(name));
+            let (width, least) = (width_of(name), least(name));
             Column { width, min_width: least, is_number: true, is_whole: false }
         };
         Self { names: names.to_vec(), columns: names.iter().map(column).collect(), width: 0, has_header: false }
@@ -150,21 +164,9 @@ impl Layout {
 
     /// Measures a row.
     pub fn measure(&mut self, row: &[Cell]) {
-        row.iter().enumerate().for_each(|(at, cell)| self.measure_cell(at, cell));
-    }
-
-    /// Measures a cell of the column with this index.
-    pub fn measure_cell(&mut self, at: usize, cell: &Cell) {
-        let Some(column) = self.columns.get_mut(at) else { return };
-        let text = escape::line(&cell.text);
-        let width = measure_text_width(&text);
-        column.width = column.width.max(width);
-        // A word has at least as many bytes as columns. Most rows have no longer word than the rows before.
-        if cell.is_whole || text.split(' ').any(|word| word.len() > column.min_width) {
-            column.min_width = column.min_width.max(if cell.is_whole { width } else { least(&text) });
+        for (column, cell) in self.columns.iter_mut().zip(row) {
+            column.measure(cell);
         }
-        column.is_number = column.is_number && (cell.is_number || cell.text == "-");
-        column.is_whole = column.is_whole || cell.is_whole;
     }
 
     /// Total number of spaces between columns.
@@ -224,7 +226,7 @@ impl Layout {
     fn simple_cells<'c>(&self, row: &'c [Cell], color: bool) -> Option<Vec<Cow<'c, str>>> {
         let cell = |(cell, column): (&'c Cell, &Column)| {
             let is_plain = !color || cell.tone == Tone::Plain;
-            let is_simple = is_plain && cell.text.bytes().all(|byte| (0x20..0x7F).contains(&byte));
+            let is_simple = is_plain && escape::is_printable_ascii(&cell.text);
             let shown = is_simple.then(|| folded(Cow::Borrowed(&cell.text), column.width))?;
             shown.split('\n').all(|line| line.len() <= column.width).then_some(shown)
         };
@@ -299,6 +301,11 @@ fn grid(width: u16, color: bool) -> comfy_table::Table {
     grid
 }
 
+/// Number of columns of a text.
+fn width_of(text: &str) -> usize {
+    if escape::is_printable_ascii(text) { text.len() } else { measure_text_width(text) }
+}
+
 /// Maximum length of a part that is kept together in a breakable word.
 const MIN_WORD: usize = 16;
 
@@ -318,7 +325,7 @@ fn pieces(word: &str) -> impl Iterator<Item = &str> {
 /// Minimum width of a text that breaks no word.
 fn least(text: &str) -> usize {
     let of_piece = |piece: &str| {
-        let wide = measure_text_width(piece);
+        let wide = width_of(piece);
         if may_break(piece) { wide.min(MIN_WORD) } else { wide }
     };
     text.split(' ').flat_map(pieces).map(of_piece).max().unwrap_or_default()
@@ -338,7 +345,7 @@ const GIANT_WORD: usize = 4096;
 
 /// A text in lines of `room` columns.
 fn folded(text: Cow<'_, str>, room: usize) -> Cow<'_, str> {
-    if text.len() < GIANT_WORD && measure_text_width(&text) <= room { text } else { fold(&text, room).into() }
+    if text.len() < GIANT_WORD && width_of(&text) <= room { text } else { fold(&text, room).into() }
 }
 
 /// Breaks a text between words, into lines of `room` columns.
@@ -346,12 +353,12 @@ fn fold(text: &str, room: usize) -> String {
     let mut out = String::with_capacity(text.len() + text.len() / room.max(1) + 1);
     let mut column = 0;
     for (at, word) in text.split(' ').enumerate() {
-        let is_short = word.len() < GIANT_WORD && measure_text_width(word) <= room;
+        let is_short = word.len() < GIANT_WORD && width_of(word) <= room;
         let whole = is_short.then_some(word);
         let parts = pieces(word).filter(|_| !is_short);
         for (part_at, part) in whole.into_iter().chain(parts).enumerate() {
             let gap = usize::from(at > 0 && part_at == 0);
-            let wide = if part.len() < GIANT_WORD { measure_text_width(part) } else { usize::MAX / 2 };
+            let wide = if part.len() < GIANT_WORD { width_of(part) } else { usize::MAX / 2 };
             if column > 0 && column + gap + wide > room {
                 out.push('\n');
                 column = 0;
@@ -365,8 +372,7 @@ fn fold(text: &str, room: usize) -> String {
                 continue;
             }
             for character in part.chars() {
-                let wide =
-                    if character.is_ascii() { 1 } else { measure_text_width(character.encode_utf8(&mut [0; 4])) };
+                let wide = width_of(character.encode_utf8(&mut [0; 4]));
                 if column + wide > room {
                     out.push('\n');
                     column = 0;

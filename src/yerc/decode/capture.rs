@@ -90,7 +90,7 @@ impl CaptureDecoder for FrameDecoder {
             time: message.time,
             direction,
             link: Arc::clone(&conversation.link),
-            text: if detail >= Detail::Text { summary(bytes, sender, request) } else { String::new() },
+            text: summary(bytes, sender, request),
             answers: request_entry.map(|(number, _)| *number),
             section,
             raw: if detail >= Detail::Raw { hex(bytes) } else { String::new() },

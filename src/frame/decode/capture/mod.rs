@@ -114,9 +114,7 @@ pub trait CaptureDecoder: Sized + Send {
 /// other parts, because they cost most of its time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum Detail {
-    /// Packet, link and problem.
-    Problem,
-    /// Also the text.
+    /// Packet, link, text and problem.
     Text,
     /// Also the section and the raw data.
     Raw,
@@ -203,8 +201,8 @@ impl<F> MessageBuffer<F> {
         Self { list: Vec::new(), frame, detail, weight: 0, room, is_full: false }
     }
 
-    /// Stores a message, if it is selected. Returns whether there is space for more.
-    fn push(&mut self, mut message: DecodedMessage<F>) -> bool {
+    /// Stores a message, if it is selected. Returns the message if there is no space for it.
+    fn push(&mut self, mut message: DecodedMessage<F>) -> Option<DecodedMessage<F>> {
         if !self.is_full && self.frame.is_none_or(|frame| frame == message.number) {
             if self.detail <= Detail::Text {
                 (message.fields, message.raw, message.section) = (Vec::new(), String::new(), None);
@@ -213,9 +211,10 @@ impl<F> MessageBuffer<F> {
             self.is_full = self.weight > self.room;
             if !self.is_full {
                 self.list.push(message);
+                return None;
             }
         }
-        !self.is_full
+        self.is_full.then_some(message)
     }
 }
 
@@ -245,6 +244,9 @@ pub fn print<D: CaptureDecoder>(
         return stream::csv(run, &source, decoder);
     }
     let is_streamed = run.filter.is_none() && run.line.is_none();
+    if is_streamed && run.screen.format == Format::Table && selection.frame.is_none() {
+        return stream::table(run, id, &source, decoder);
+    }
     let room = if is_streamed { NOTES_LIMIT } else { MEMORY_LIMIT };
     let detail = if run.is_for_people() && selection.frame.is_none() { Detail::Text } else { Detail::Fields };
     let (capture, decoder) = {
@@ -256,7 +258,7 @@ pub fn print<D: CaptureDecoder>(
             .hint("use -o csv for one row per message")
             .into());
     }
-    let Some(capture) = capture else { return stream::print(run, id, &source, decoder) };
+    let Some(capture) = capture else { return stream::json(run, id, &source, decoder) };
     // The report is never an intermediate JSON value, because a JSON value needs many times the memory.
     if is_streamed && !run.is_for_people() {
         let failure = capture.failure();
@@ -307,17 +309,28 @@ impl<R: Read, O: Fn() -> io::Result<R> + Sync> Source<'_, O> {
             if frame.is_some() {
                 links.count(&message.link);
             }
-            kept.push(message) || room >= MEMORY_LIMIT
+            kept.push(message).is_none() || room >= MEMORY_LIMIT
         })?;
         links.are_counted = frame.is_some();
         if kept.is_full && room < MEMORY_LIMIT {
             return Ok((None, decoder.restart()));
         }
-        let DecodedCapture { packets, notes, .. } = std::mem::take(decoder.decoded());
+        let content = std::mem::take(decoder.decoded());
+        Ok((Some(self.content(kept, links, &summary, content)?), decoder.restart()))
+    }
+
+    /// Content of a file whose messages fit into memory.
+    fn content<F>(
+        &self,
+        mut kept: MessageBuffer<F>,
+        mut links: Links,
+        summary: &Summary,
+        DecodedCapture { packets, notes, .. }: DecodedCapture<F>,
+    ) -> Result<Capture<F>> {
         // Messages of one packet stay in their order.
         kept.list.sort_by_key(|message| message.number);
         let messages: Vec<_> = kept.list.into_iter().map(|message| links.row(message, summary.first)).collect();
-        if let Some(frame) = frame.filter(|_| messages.is_empty()) {
+        if let Some(frame) = self.selection.frame.filter(|_| messages.is_empty()) {
             let message = format!("no message of this family in packet {frame} of {}", self.name);
             return Err(Failure::usage(message).hint("list the packet numbers without --frame"));
         }
@@ -325,11 +338,11 @@ impl<R: Read, O: Fn() -> io::Result<R> + Sync> Source<'_, O> {
         for row in &messages {
             problems.add(row.number(), row.problem());
         }
-        let mut capture = Capture { messages, problems, links: links.list, ..self.about(&summary, packets, notes) };
+        let mut capture = Capture { messages, problems, links: links.list, ..self.about(summary, packets, notes) };
         if kept.is_full {
             capture.damage = Some(TOO_MANY_MESSAGES.to_owned());
         }
-        Ok((Some(capture), decoder.restart()))
+        Ok(capture)
     }
 
     /// Report without messages.

@@ -92,8 +92,6 @@ impl Serialize for End {
 
 /// Columns of the table.
 pub(super) const COLUMNS: [&str; 6] = ["number", "time s", "link", "way", "answers", "message"];
-/// Index of the column with the text.
-pub(super) const MESSAGE: usize = 5;
 
 impl<F> Row<F> {
     /// Number of the packet.
@@ -134,7 +132,7 @@ impl<F> Row<F> {
 }
 
 /// Cell with the text of a message.
-pub(super) fn message_cell(text: &str, problem: Option<&str>) -> Cell {
+fn message_cell(text: &str, problem: Option<&str>) -> Cell {
     // If the message cannot be identified, the text already contains the reason.
     let shown = match problem {
         Some(problem) if !text.contains("no valid") => format!("{text}; problem: {problem}"),
@@ -162,36 +160,13 @@ fn row_cells(
     ]
 }
 
-/// Extreme values of the messages of a file. Their cells are as wide as the columns before the text.
-#[derive(Debug, Default)]
-pub(super) struct Extremes {
-    number: u64,
-    /// Earliest and latest time.
-    times: Option<(Duration, Duration)>,
-    /// Whether there is a message that answers no packet.
-    has_requests: bool,
-    answers: Option<u64>,
-}
+/// A row with the longest number and time that a capture has in practice (some gigabytes, 11 days), and with a text of
+/// this length.
+pub(super) fn row_of_the_longest(text: usize) -> [Cell; 6] {
+    const NUMBER: u64 = 99_999_999;
+    const TIME: f64 = 999_999.0;
 
-impl Extremes {
-    pub(super) fn add<F>(&mut self, message: &DecodedMessage<F>) {
-        self.number = self.number.max(message.number);
-        let (earliest, latest) = self.times.unwrap_or((message.time, message.time));
-        self.times = Some((earliest.min(message.time), latest.max(message.time)));
-        self.has_requests |= message.answers.is_none();
-        self.answers = self.answers.max(message.answers);
-    }
-
-    /// Rows with these values; none without messages.
-    pub(super) fn rows(&self, first: Duration, links: usize) -> impl Iterator<Item = [Cell; 6]> {
-        let answers = self.has_requests.then_some(None).into_iter().chain(self.answers.map(Some));
-        let times = self.times.into_iter().flat_map(|(earliest, latest)| [earliest, latest]);
-        let number = self.number;
-        let pairs: Vec<_> = times.flat_map(|time| answers.clone().map(move |answers| (time, answers))).collect();
-        pairs
-            .into_iter()
-            .map(move |(time, answers)| row_cells(number, seconds(time, first), links, true, answers, Cell::default()))
-    }
+    row_cells(NUMBER, TIME, 1, true, Some(NUMBER), Cell::from("- ".repeat(text)))
 }
 
 impl<F: Field> Capture<F> {
@@ -275,6 +250,8 @@ pub const TOO_MANY_MESSAGES: &str = "the capture has too many messages; only the
 pub struct Links {
     pub(super) list: Vec<Link>,
     numbers: HashMap<Arc<(String, String)>, usize>,
+    /// Link of the last message. Most messages have the same link as the message before.
+    last: Option<(Arc<(String, String)>, usize)>,
     /// Whether the rows come from messages that were already counted.
     pub(super) are_counted: bool,
 }
@@ -282,13 +259,18 @@ pub struct Links {
 impl Links {
     /// Adds a message to its link, which gets the next number if it is new.
     fn add(&mut self, link: &Arc<(String, String)>, count: u64) -> usize {
-        let at = self.numbers.get(link).copied().unwrap_or_else(|| {
+        let last = self.last.as_ref().filter(|(last, _)| Arc::ptr_eq(last, link));
+        let known = last.map(|(_, at)| *at).or_else(|| self.numbers.get(link).copied());
+        let at = known.unwrap_or_else(|| {
             let at = self.list.len();
             let (client, controller) = (**link).clone();
             self.list.push(Link { link: at + 1, client, controller, messages: 0 });
             self.numbers.insert(Arc::clone(link), at);
             at
         });
+        if last.is_none() {
+            self.last = Some((Arc::clone(link), at));
+        }
         let link = &mut self.list[at];
         link.messages += count;
         link.link
@@ -357,7 +339,6 @@ mod tests {
 
     use super::*;
     use crate::output::csv::Sheet;
-    use crate::output::render::Layout;
     use crate::schema_of;
 
     /// A field, which no list shows.
@@ -403,19 +384,5 @@ mod tests {
             assert_eq!(written, expected);
         }
         assert_eq!(links.list[0].messages, 5);
-    }
-
-    #[test]
-    fn extremes_give_the_widths_of_all_rows() {
-        let (first, mut links) = (Duration::from_secs(6000), Links::default());
-        let (mut of_rows, mut of_extremes) = (Layout::new(&COLUMNS), Layout::new(&COLUMNS));
-        let mut extremes = Extremes::default();
-        for message in messages() {
-            extremes.add(&message);
-            of_extremes.measure_cell(MESSAGE, &message_cell(&message.text, message.problem.as_deref()));
-            of_rows.measure(&links.row(message, first).cells());
-        }
-        extremes.rows(first, links.list.len()).for_each(|row| of_extremes.measure(&row));
-        assert_eq!(format!("{of_extremes:?}"), format!("{of_rows:?}"));
     }
 }

@@ -1,69 +1,136 @@
-//! Streamed report with more messages than fit into memory: the file is read a second time while it is printed, with
-//! constant memory. The first pass collects the summary and the column widths.
+//! Reports with more messages than fit into memory: the file is printed while it is read, with constant memory. What only
+//! the whole file tells is printed after the messages.
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::io::{self, Read};
 
-use serde::ser::{Serialize, SerializeSeq as _, Serializer};
+use jiff::Timestamp;
+use serde::ser::{Error as _, Serialize, SerializeMap as _, SerializeSeq as _, Serializer};
 
-use super::report::{COLUMNS, Capture, Extremes, Link, Links, MESSAGE, Problems, Row, message_cell};
-use super::{CaptureDecoder, DecodedCapture, DecodedMessage, Detail, ReportEnvelope, Source};
+use super::report::{COLUMNS, Capture, Links, Problems, Row, row_of_the_longest};
+use super::{CaptureDecoder, DecodedCapture, DecodedMessage, Detail, MessageBuffer, NOTES_LIMIT, Source};
+use crate::decode::Field;
+use crate::output::Format;
 use crate::output::busy_work::register;
 use crate::output::csv::Sheet;
+use crate::output::envelope::ErrorBody;
 use crate::output::render::{self, Layout};
 use crate::prelude::basics::*;
 use crate::run::{Run, RunError};
 use crate::schema_of;
-use armctl_transport::capture::Summary;
 
 /// Number of rows per layout batch.
 const ROWS_PER_BATCH: usize = 1000;
 /// Number of bytes of CSV per write.
 const CSV_LIMIT: usize = 64 << 10;
 
-/// Prints a file while it is read.
-pub fn print<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder>(
+/// Prints the messages as JSON.
+pub fn json<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder>(
+    run: &Run,
+    id: &str,
+    source: &Source<'_, O>,
+    decoder: D,
+) -> Result<(), RunError> {
+    let _busy = register();
+    let first = source.first_time()?;
+    let messages = Messages { source, first, decoder: RefCell::new(Some(decoder)), about: OnceCell::new() };
+    run.screen.json_as_it_comes(&Envelope { run, id, messages: &messages })?;
+    let failure = messages.about.into_inner().and_then(|about| about.failure());
+    failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, is_reported: true }))
+}
+
+/// Prints the messages as a table. If they do not fit into memory, the table is printed while the file is read: the
+/// columns fit to the first messages, and the summary is below the table.
+pub fn table<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder>(
     run: &Run,
     id: &str,
     source: &Source<'_, O>,
     mut decoder: D,
 ) -> Result<(), RunError> {
-    let mut links = Links::default();
-    let mut problems = Problems::default();
-    let mut layout = Layout::new(&COLUMNS);
-    let mut extremes = Extremes::default();
-    let is_table = run.is_for_people();
-    let (first_detail, detail) =
-        if is_table { (Detail::Text, Detail::Text) } else { (Detail::Problem, Detail::Fields) };
-    let summary = {
-        let _busy = register();
-        source.decode(&mut decoder, first_detail, |message| {
-            links.count(&message.link);
-            problems.add(message.number, message.problem.as_ref());
-            if is_table {
-                extremes.add(&message);
-                layout.measure_cell(MESSAGE, &message_cell(&message.text, message.problem.as_deref()));
-            }
-            true
-        })?
+    let busy = register();
+    let mut kept = MessageBuffer::new(NOTES_LIMIT, None, Detail::Text);
+    let mut long_table: Option<LongTable<'_>> = None;
+    let mut written = Ok(());
+    let summary = source.decode(&mut decoder, Detail::Text, |message| {
+        written = match &mut long_table {
+            Some(table) => table.push(message),
+            None => match kept.push(message) {
+                None => Ok(()),
+                Some(message) => source
+                    .first_time()
+                    .and_then(|first| LongTable::start(run, first, std::mem::take(&mut kept.list)))
+                    .and_then(|table| long_table.insert(table).push(message)),
+            },
+        };
+        written.is_ok()
+    })?;
+    written?;
+    let content = std::mem::take(decoder.decoded());
+    let Some(table) = long_table else {
+        let capture = source.content(kept, Links::default(), &summary, content)?;
+        drop(busy);
+        return run.local(id, &capture);
     };
-    extremes.rows(summary.first, links.list.len()).for_each(|row| layout.measure(&row));
-    let DecodedCapture { packets, notes, .. } = std::mem::take(decoder.decoded());
-    let mut about: Capture<D::Field> = source.about(&summary, packets, notes);
-    (about.links, about.problems) = (links.list, problems);
-    let failure = about.failure();
-    let second_pass = SecondPass { source, detail, summary: &summary, all: about.problems.all };
-    let _busy = register();
-    if !run.is_for_people() {
-        let Capture { file, packets, other_packets, links, notes, damage, .. } = &about;
-        let messages = Messages(RefCell::new(Some((second_pass, decoder.restart()))));
-        let (packets, other_packets) = (*packets, *other_packets);
-        let data = Written { file, packets, other_packets, links, messages, notes, damage };
-        run.screen.json_as_it_comes(&ReportEnvelope::new(run, id, data, failure.as_ref()))?;
-        return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, is_reported: true }));
+    table.finish(source.about::<D::Field>(&summary, content.packets, content.notes))
+}
+
+/// A table with more messages than fit into memory.
+struct LongTable<'a> {
+    run: &'a Run,
+    /// Time of the first packet.
+    first: Duration,
+    links: Links,
+    problems: Problems,
+    layout: Layout,
+    table: Table,
+}
+
+impl<'a> LongTable<'a> {
+    /// Fits the columns to the first messages, and writes these.
+    fn start<F>(run: &'a Run, first: Duration, messages: Vec<DecodedMessage<F>>) -> Result<Self> {
+        run.screen.note("a large capture: its links are below the messages");
+        let (mut links, mut layout) = (Links::default(), Layout::new(&COLUMNS));
+        let rows: Vec<_> = messages.into_iter().map(|message| links.row(message, first)).collect();
+        for row in &rows {
+            layout.measure(&row.cells());
+        }
+        // Later numbers and times are longer, and the text gets the width that is left.
+        let width = run.screen.width();
+        layout.measure(&row_of_the_longest(usize::from(width)));
+        let (layout, table) = (layout.fit_width(width), Table::new(&COLUMNS, ""));
+        let mut started = Self { run, first, links, problems: Problems::default(), layout, table };
+        rows.into_iter().try_for_each(|row| started.write(&row))?;
+        Ok(started)
     }
-    second_pass.rows_for_people(run, &about, layout, decoder.restart())?;
-    failure.map_or(Ok(()), |failure| Err(failure.into()))
+
+    fn push<F>(&mut self, message: DecodedMessage<F>) -> Result<()> {
+        let row = self.links.row(message, self.first);
+        self.write(&row)
+    }
+
+    fn write<F>(&mut self, row: &Row<F>) -> Result<()> {
+        self.problems.add(row.number(), row.problem());
+        self.table.row(row.cells());
+        if self.table.rows.len() < ROWS_PER_BATCH { Ok(()) } else { self.flush() }
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        let piece = self.layout.piece(&self.table.rows, self.run.screen.stdout_color());
+        self.table.rows.clear();
+        self.run.screen.data(&piece)
+    }
+
+    /// Writes the last messages, and the summary.
+    fn finish<F: Field>(mut self, about: Capture<F>) -> Result<(), RunError> {
+        self.flush()?;
+        let about = Capture { links: self.links.list, problems: self.problems, ..about };
+        let screen = &self.run.screen;
+        for text in [about.head(), about.notes.join("\n")].into_iter().filter(|text| !text.is_empty()) {
+            let text = render::text(&View::text(text), screen.width(), screen.stdout_color());
+            screen.data(&format!("\n{text}"))?;
+        }
+        about.failure().map_or(Ok(()), |failure| Err(failure.into()))
+    }
 }
 
 /// Prints the messages as CSV, without their lists of fields, in one pass.
@@ -94,91 +161,78 @@ pub fn csv<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder>(
     about.failure().map_or(Ok(()), |failure| Err(failure.into()))
 }
 
-/// Second pass through the file, up to the number of messages of the first pass.
-struct SecondPass<'a, 'b, O> {
+/// Messages that are decoded while they are written.
+struct Messages<'a, 'b, O, D: CaptureDecoder> {
     source: &'a Source<'b, O>,
-    detail: Detail,
-    summary: &'a Summary,
-    all: u64,
+    /// Time of the first packet.
+    first: Duration,
+    decoder: RefCell<Option<D>>,
+    /// The report without the messages, once these are written.
+    about: OnceCell<Capture<D::Field>>,
 }
-
-impl<R: Read, O: Fn() -> io::Result<R> + Sync> SecondPass<'_, '_, O> {
-    /// Passes on every message until the callback ends.
-    fn rows<D: CaptureDecoder>(&self, mut decoder: D, mut each: impl FnMut(Row<D::Field>) -> bool) -> Result<()> {
-        let mut links = Links::default();
-        let mut left = self.all;
-        let row = |message: DecodedMessage<D::Field>| {
-            let Some(fewer) = left.checked_sub(1) else { return false };
-            left = fewer;
-            each(links.row(message, self.summary.first))
-        };
-        self.source.decode(&mut decoder, self.detail, row).map(|_| ())
-    }
-
-    fn rows_for_people<D: CaptureDecoder>(
-        &self,
-        run: &Run,
-        about: &Capture<D::Field>,
-        layout: Layout,
-        decoder: D,
-    ) -> Result<()> {
-        let screen = &run.screen;
-        let (width, color) = (screen.width(), screen.stdout_color());
-        let text = |text: String| render::text(&View::text(text), width, color);
-        screen.data(&text(about.head()))?;
-        screen.data("\n")?;
-        let mut layout = layout.fit_width(width);
-        let mut table = Table::new(&COLUMNS, "");
-        let mut write = |table: &mut Table| {
-            let piece = layout.piece(&table.rows, color);
-            table.rows.clear();
-            screen.data(&piece)
-        };
-        let mut written = Ok(());
-        self.rows(decoder, |row| {
-            table.row(row.cells());
-            if table.rows.len() >= ROWS_PER_BATCH {
-                written = write(&mut table);
-            }
-            written.is_ok()
-        })?;
-        written?;
-        if !table.rows.is_empty() {
-            write(&mut table)?;
-        }
-        if about.notes.is_empty() {
-            return Ok(());
-        }
-        screen.data(&format!("\n{}", text(about.notes.join("\n"))))
-    }
-}
-
-/// Fields of a [`Capture`].
-#[derive(serde::Serialize)]
-struct Written<'a, M> {
-    file: &'a str,
-    packets: u64,
-    other_packets: u64,
-    links: &'a [Link],
-    messages: M,
-    notes: &'a [String],
-    damage: &'a Option<String>,
-}
-
-/// Messages that are read during serialization.
-struct Messages<'a, 'b, O, D>(RefCell<Option<(SecondPass<'a, 'b, O>, D)>>);
 
 impl<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder> Serialize for Messages<'_, '_, O, D> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut list = serializer.serialize_seq(None)?;
-        let Some((second_pass, decoder)) = self.0.borrow_mut().take() else { return list.end() };
-        let mut written = Ok(());
-        let read = second_pass.rows(decoder, |row| {
-            written = list.serialize_element(&row);
+        let Some(mut decoder) = self.decoder.take() else { return list.end() };
+        let (mut links, mut problems, mut written) = (Links::default(), Problems::default(), Ok(()));
+        let read = self.source.decode(&mut decoder, Detail::Fields, |message| {
+            problems.add(message.number, message.problem.as_ref());
+            written = list.serialize_element(&links.row(message, self.first));
             written.is_ok()
         });
         written?;
-        read.map_err(|failure| serde::ser::Error::custom(failure.message))?;
+        let summary = read.map_err(|failure| S::Error::custom(failure.message))?;
+        let DecodedCapture { packets, notes, .. } = std::mem::take(decoder.decoded());
+        self.about.get_or_init(|| Capture {
+            links: links.list,
+            problems,
+            ..self.source.about(&summary, packets, notes)
+        });
         list.end()
+    }
+}
+
+/// Envelope around the messages.
+struct Envelope<'a, M> {
+    run: &'a Run,
+    id: &'a str,
+    messages: &'a M,
+}
+
+impl<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder> Serialize for Envelope<'_, Messages<'_, '_, O, D>> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        if self.run.screen.format == Format::Jsonl {
+            map.serialize_entry("time", &Timestamp::now())?;
+        }
+        map.serialize_entry("robot", &())?;
+        map.serialize_entry("command", self.id)?;
+        map.serialize_entry("data", &Data(self.messages))?;
+        let error = self.messages.about.get().and_then(Report::failure).map(ErrorBody::from);
+        map.serialize_entry("ok", &error.is_none())?;
+        if let Some(error) = error {
+            map.serialize_entry("error", &error)?;
+        }
+        map.end()
+    }
+}
+
+/// Data of the envelope: the keys of a [`Capture`].
+struct Data<'a, M>(&'a M);
+
+impl<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder> Serialize for Data<'_, Messages<'_, '_, O, D>> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("messages", self.0)?;
+        if let Some(Capture { file, packets, other_packets, links, notes, damage, .. }) = self.0.about.get() {
+            map.serialize_entry("file", file)?;
+            map.serialize_entry("packets", packets)?;
+            map.serialize_entry("other_packets", other_packets)?;
+            map.serialize_entry("links", links)?;
+            map.serialize_entry("notes", notes)?;
+            map.serialize_entry("damage", damage)?;
+        }
+        map.end()
     }
 }
