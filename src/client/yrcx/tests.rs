@@ -228,6 +228,18 @@ async fn dropped_motion_continues_until_a_stop() {
 }
 
 #[tokio::test(start_paused = true)]
+async fn leaving_waits_for_a_short_command_and_not_for_a_motion() {
+    for (order, waits) in [(point(1), true), (motion(), false)] {
+        let link = ImageLink::in_process(Box::<EndlessCommandPeer>::default());
+        let mut client = Client::connect(link, Options::default().with_risk(Risk::Motion)).await.unwrap();
+        assert!(timeout(Duration::from_millis(300), client.ask(&order)).await.is_err());
+        let began = Instant::now();
+        client.leave().await.unwrap();
+        assert_eq!(began.elapsed() >= Duration::from_secs(1), waits, "{order:?}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
 async fn a_jog_ends_after_its_time() {
     let mut client = simulated(Risk::Motion).await;
     let jogged = client.jog(&jog(), Some(Duration::from_millis(500))).await.unwrap();

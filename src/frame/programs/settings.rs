@@ -132,6 +132,8 @@ impl CheckSettings {
 
 #[cfg(test)]
 mod tests {
+    use armctl_controller::findings::Severity;
+
     use super::*;
 
     #[test]
@@ -145,6 +147,30 @@ mod tests {
             let failure = CheckSettings::parse(text, "f").unwrap_err();
             assert!(failure.message.starts_with(message), "{failure}");
             assert!(failure.hint.unwrap_or_default().starts_with(hint), "{text}");
+        }
+    }
+    #[test]
+    fn a_rule_is_off_in_all_programs_or_ignored_in_some() {
+        let settings =
+            CheckSettings::parse("[rules]\nnever-read = false\n[ignore]\n\"T*\" = [\"unused-position\"]\nX = []", "f");
+        let settings = settings.unwrap();
+        let finding = |rule| Finding {
+            rule,
+            severity: Severity::Warning,
+            line: 1,
+            column: 1,
+            message: String::new(),
+            hint: None,
+        };
+        for (program, rule, is_shown) in [
+            ("A", Rule::NeverRead, false),
+            ("A", Rule::UnusedPosition, true),
+            ("T1", Rule::UnusedPosition, false),
+            ("T1", Rule::MissingLabel, true),
+            ("X", Rule::MissingLabel, false),
+            ("X", Rule::Syntax, true),
+        ] {
+            assert_eq!(settings.shows(program, &finding(rule)), is_shown, "{rule:?} in {program}");
         }
     }
 }
