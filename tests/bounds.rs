@@ -91,6 +91,31 @@ fn limits_the_memory_for_many_small_messages() {
 
 #[cfg(target_os = "linux")]
 #[test]
+fn json_of_a_large_capture_has_the_keys_of_a_small_one() {
+    let folder = folder();
+    let [small, large] = [1, 8].map(|packets| {
+        let name = format!("{packets}.pcap");
+        capture(&folder.path().join(&name), packets, &vec![0; 24 * 2700]);
+        let output = limited(folder.path(), "-v 500000", &["decode", "yrcx", &name, "--json"]);
+        end_within_limit(&output, 0, "");
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).expect("JSON")
+    });
+    for place in ["", "/data", "/data/links/0"] {
+        let keys = |report: &serde_json::Value| -> std::collections::BTreeSet<String> {
+            report.pointer(place).and_then(|value| value.as_object()).expect("an object").keys().cloned().collect()
+        };
+        assert_eq!(keys(&large), keys(&small), "{place}");
+    }
+    let messages = |report: &serde_json::Value| report["data"]["messages"].as_array().expect("a list").clone();
+    let (few, many) = (messages(&small), messages(&large));
+    assert_eq!((few.len(), many.len()), (2700, 8 * 2700));
+    assert_eq!(many[..2700], few[..]);
+    assert_eq!((&large["ok"], &large["data"]["packets"]), (&true.into(), &8.into()));
+    assert_eq!(large["data"]["links"][0]["messages"], 8 * 2700);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
 fn reads_a_capture_in_pieces() {
     let folder = folder();
     // The packets belong to no family. They have half a gigabyte; the memory limit is a quarter of a gigabyte.

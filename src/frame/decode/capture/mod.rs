@@ -191,8 +191,8 @@ struct MessageBuffer<F> {
     is_full: bool,
 }
 
-/// Memory limit for messages if they can be streamed instead.
-const NOTES_LIMIT: usize = 16 << 20;
+/// Memory of the messages above which a report is printed while the file is read.
+const STREAM_ABOVE: usize = 16 << 20;
 /// Memory limit if all messages are needed as one value, for a filter.
 const MEMORY_LIMIT: usize = 256 << 20;
 
@@ -247,7 +247,7 @@ pub fn print<D: CaptureDecoder>(
     if is_streamed && run.screen.format == Format::Table && selection.frame.is_none() {
         return stream::table(run, id, &source, decoder);
     }
-    let room = if is_streamed { NOTES_LIMIT } else { MEMORY_LIMIT };
+    let room = if is_streamed { STREAM_ABOVE } else { MEMORY_LIMIT };
     let detail = if run.is_for_people() && selection.frame.is_none() { Detail::Text } else { Detail::Fields };
     let (capture, decoder) = {
         let _busy = register();

@@ -1,5 +1,5 @@
-//! Reports with more messages than fit into memory: the file is printed while it is read, with constant memory. What only
-//! the whole file tells is printed after the messages.
+//! Reports with more messages than fit into memory: the file is printed while it is read, with constant memory. Links and
+//! totals are printed after the messages.
 
 use std::cell::{OnceCell, RefCell};
 use std::io::{self, Read};
@@ -8,7 +8,7 @@ use jiff::Timestamp;
 use serde::ser::{Error as _, Serialize, SerializeMap as _, SerializeSeq as _, Serializer};
 
 use super::report::{COLUMNS, Capture, Links, Problems, Row, row_of_the_longest};
-use super::{CaptureDecoder, DecodedCapture, DecodedMessage, Detail, MessageBuffer, NOTES_LIMIT, Source};
+use super::{CaptureDecoder, DecodedCapture, DecodedMessage, Detail, MessageBuffer, STREAM_ABOVE, Source};
 use crate::decode::Field;
 use crate::output::Format;
 use crate::output::busy_work::register;
@@ -39,8 +39,8 @@ pub fn json<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder>(
     failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, is_reported: true }))
 }
 
-/// Prints the messages as a table. If they do not fit into memory, the table is printed while the file is read: the
-/// columns fit to the first messages, and the summary is below the table.
+/// Prints the messages as a table. If they do not fit into memory, the table is printed while the file is read. Its
+/// columns then fit to the first messages, and the summary is below it.
 pub fn table<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder>(
     run: &Run,
     id: &str,
@@ -48,7 +48,7 @@ pub fn table<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder>(
     mut decoder: D,
 ) -> Result<(), RunError> {
     let busy = register();
-    let mut kept = MessageBuffer::new(NOTES_LIMIT, None, Detail::Text);
+    let mut kept = MessageBuffer::new(STREAM_ABOVE, None, Detail::Text);
     let mut long_table: Option<LongTable<'_>> = None;
     let mut written = Ok(());
     let summary = source.decode(&mut decoder, Detail::Text, |message| {
@@ -225,7 +225,20 @@ impl<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder> Serialize for 
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("messages", self.0)?;
-        if let Some(Capture { file, packets, other_packets, links, notes, damage, .. }) = self.0.about.get() {
+        if let Some(about) = self.0.about.get() {
+            // The pattern is complete, so that a new key is not forgotten here.
+            let Capture {
+                file,
+                packets,
+                other_packets,
+                links,
+                notes,
+                damage,
+                messages: _,
+                problems: _,
+                is_detailed: _,
+                is_filtered: _,
+            } = about;
             map.serialize_entry("file", file)?;
             map.serialize_entry("packets", packets)?;
             map.serialize_entry("other_packets", other_packets)?;
