@@ -24,9 +24,11 @@ struct ReceivedRequest {
 }
 
 impl ReceivedRequest {
-    fn parse(frame: &[u8]) -> Self {
-        let word = |at: usize| u16::from_le_bytes([frame[at], frame[at + 1]]);
-        Self { command: word(24), instance: word(26), service: frame[29], data: frame[32..].to_vec() }
+    /// `None` for a late datagram to the process that had this port before.
+    fn parse(frame: &[u8]) -> Option<Self> {
+        let (header, data) = frame.split_at_checked(32).filter(|(header, _)| header.starts_with(b"YERC"))?;
+        let word = |at: usize| u16::from_le_bytes([header[at], header[at + 1]]);
+        Some(Self { command: word(24), instance: word(26), service: header[29], data: data.to_vec() })
     }
 
     /// Whether the request only reads (FS and DX 3.3, 3.4.3, 3.4.4).
@@ -67,7 +69,7 @@ impl Controller {
                 let mut buffer = [0; 2048];
                 while !over.load(Ordering::Relaxed) {
                     let Ok((len, from)) = socket.recv_from(&mut buffer) else { continue };
-                    let request = ReceivedRequest::parse(&buffer[..len]);
+                    let Some(request) = ReceivedRequest::parse(&buffer[..len]) else { continue };
                     let reaction = (react.lock().expect("no panic"))(&request);
                     asked.lock().expect("no panic").push(request.clone());
                     if let Some(frame) = answer(&buffer[..len], reaction) {

@@ -41,7 +41,8 @@ fn recording(state: &str, spoil: Spoil) -> (String, Received) {
         }
         loop {
             for (index, (division, socket)) in sockets.iter().enumerate() {
-                if let Ok((len, from)) = socket.recv_from(&mut buffer) {
+                // A shorter datagram is for the process that had this port before.
+                if let Ok((len @ 32.., from)) = socket.recv_from(&mut buffer) {
                     peers[index] = Some(from);
                     record.lock().unwrap().push(buffer[..len].to_vec());
                     match RequestFrame::parse(&buffer[..len]).ok().and_then(|request| spoil(&request)) {

@@ -2,8 +2,7 @@
 
 use std::time::Duration;
 
-use armctl_controller::Now;
-use armctl_controller::yrcx::answer::Answer;
+use armctl_controller::yrcx::answer::{Answer, Status};
 use armctl_controller::yrcx::image::{Image, Words};
 use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::register::general;
@@ -11,6 +10,7 @@ use armctl_controller::yrcx::sequence::{self, Sequence};
 use armctl_controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome, Policy, Silence};
 use armctl_controller::yrcx::signal::{input, output, resting};
 use armctl_controller::yrcx::table::DurationClass;
+use armctl_controller::{Now, Risk};
 use armctl_transport::image::{Event as LinkEvent, LinkError, image_after_loss};
 use armctl_transport::session::client::SessionBusy;
 use tokio::time::Instant;
@@ -25,6 +25,12 @@ pub(super) const NO_DEADLINE: Duration = Duration::from_secs(3600);
 const MAX_SETTLE: Duration = Duration::from_secs(10);
 /// Time limit for sending the last change before the connection is closed.
 const LEAVE_TIMEOUT: Duration = Duration::from_secs(1);
+
+/// Whether a command has ended when its answer arrives. Only a read has: a failure of the status reset then concerns the
+/// next command, which waits for the ready status anyway. So the caller gets the answer one scan and two images earlier.
+pub(super) fn ends_with_answer(order: &Order) -> bool {
+    order.risk() == Risk::Read && !order.is_continuous()
+}
 
 impl Client {
     /// Waits for the first input image. On a commanding connection, also waits until the resting image is sent:
@@ -60,7 +66,8 @@ impl Client {
             Transport::Image(link) => link.watchdog().saturating_mul(2).min(MAX_SETTLE),
             Transport::DryRun(_) | Transport::Nothing => Duration::ZERO,
         };
-        let mut exchange = Exchange::new(order.clone(), Policy { settle, ..self.policy });
+        let policy = Policy { settle, ends_with_answer: ends_with_answer(order), ..self.policy };
+        let mut exchange = Exchange::new(order.clone(), policy);
         if let Some(image) = &self.input {
             exchange.handle(self.now(), image);
         }
@@ -165,7 +172,9 @@ impl Client {
         self.check_session()
     }
 
-    /// Waits at most 1 s for short commands to end and for the last change to be sent. A running motion continues.
+    /// Waits at most 1 s for short commands to end, for the controller to be ready, and for the last change to be sent. A
+    /// running motion continues. A session sends the last change after this client has left, and its next client waits
+    /// for the ready controller.
     ///
     /// # Errors
     /// Errors of the link.
@@ -183,12 +192,21 @@ impl Client {
         let until = Instant::now() + LEAVE_TIMEOUT;
         while self.is_up && Instant::now() < until {
             let is_done = self.exchange.as_ref().is_none_or(|exchange| !is_short(exchange));
-            if is_done && self.output.last_sent() == Some(&self.output.next) {
+            let passed = if self.is_shared { self.last_output.as_ref() } else { self.output.last_sent() };
+            if is_done && !self.is_resetting() && passed == Some(&self.output.next) {
                 break;
             }
             self.run_until(until).await?;
         }
+        if let Some(command) = self.resetting.filter(|_| self.is_resetting()) {
+            self.watcher.event(Event::NotReleased(command));
+        }
         Ok(())
+    }
+
+    /// Whether the controller still has the status of an answered command.
+    fn is_resetting(&self) -> bool {
+        self.resetting.is_some() && self.input.is_some_and(|image| image.0[0] != Status::Ready.word())
     }
 
     /// Runs one turn of the event loop: polls, sends, and returns after one event or deadline.

@@ -15,6 +15,7 @@ use armctl_transport::session::client::SessionBusy;
 use tokio::time::Instant;
 
 use super::error::{Error, Refusal};
+use super::event_loop::ends_with_answer;
 use super::{Client, Event};
 use crate::Reason;
 
@@ -159,11 +160,17 @@ impl Client {
     pub(super) fn count(&mut self, order: &Order, outcome: &Outcome) {
         self.totals.commands += 1;
         self.totals.waited += outcome.elapsed;
-        if let Some(status) = outcome.leftover {
+        // A status that this client or another client of the session is resetting is no surprise.
+        let is_expected = self.is_shared || self.resetting.take().is_some();
+        if let Some(status) = outcome.leftover.filter(|_| !is_expected) {
             self.watcher.event(Event::StatusReset(order.command(), status));
         }
         if matches!(outcome.ended, Ended::Answered(_)) && !outcome.released {
-            self.watcher.event(Event::NotReleased(order.command()));
+            if !ends_with_answer(order) {
+                self.watcher.event(Event::NotReleased(order.command()));
+            } else if !self.is_shared {
+                self.resetting = Some(order.command());
+            }
         }
         // For a motion, the command ends when the motion ends. For a start of a program, the command ends while the
         // program still runs.

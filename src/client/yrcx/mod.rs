@@ -104,6 +104,9 @@ pub struct Client {
     is_shared: bool,
     /// Whether the remote command of this client has ended, so that another client may send the next command.
     is_turn_over: bool,
+    /// The answered command whose status reset is sent but not confirmed by the ready status. The next command waits for
+    /// the ready status. `None` in a session, where another client can send the next command.
+    resetting: Option<Command>,
     started: Instant,
     watcher: Box<dyn Watcher<Event>>,
     totals: Totals,
@@ -298,6 +301,7 @@ impl Client {
             is_held,
             is_shared: false,
             is_turn_over: false,
+            resetting: None,
             started: Instant::now(),
             watcher: Box::new(()),
             totals: Totals::default(),

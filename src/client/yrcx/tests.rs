@@ -3,9 +3,10 @@
 use std::fmt;
 use std::sync::{Arc, Mutex};
 
+use armctl_controller::yrcx::answer::Status;
 use armctl_controller::yrcx::order::{Draft, Order};
 use armctl_controller::yrcx::procedure::Procedure;
-use armctl_controller::yrcx::session::Silence;
+use armctl_controller::yrcx::session::{NotSentReason, Silence};
 use armctl_controller::yrcx::signal::output;
 use armctl_controller::yrcx::value::Key;
 use armctl_transport::image::ImagePeer;
@@ -237,6 +238,67 @@ async fn leaving_waits_for_a_short_command_and_not_for_a_motion() {
         client.leave().await.unwrap();
         assert_eq!(began.elapsed() >= Duration::from_secs(1), waits, "{order:?}");
     }
+}
+
+/// A peer that answers the first command and ignores the status reset.
+#[derive(Debug, Default)]
+struct PeerWithoutReset {
+    has_ended: bool,
+}
+
+impl ImagePeer for PeerWithoutReset {
+    fn input(&mut self, _: Duration, bytes: Option<&[u8]>) {
+        self.has_ended |= bytes.is_some_and(|bytes| bytes[..2] != [0, 0]);
+    }
+
+    fn output(&mut self, _: Duration) -> Option<Vec<u8>> {
+        let mut image = Image::default();
+        output::CPU_OK.set(&mut image, true);
+        image.0[0] = if self.has_ended { Status::NormalEnd.word() } else { Status::Ready.word() };
+        Some(image.to_bytes().to_vec())
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        None
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_read_ends_with_its_answer_and_the_reset_is_confirmed_later() {
+    let mut client = simulated(Risk::Write).await;
+    let told = Arc::default();
+    client.watch(EventRecorder(Arc::clone(&told)));
+    let status = |client: &Client| client.input.map(|image| image.0[0]);
+    for _ in 0..2 {
+        client.ask(&point(1)).await.unwrap();
+        assert_eq!(status(&client), Some(Status::NormalEnd.word()));
+        client.ask(&order(Command::AlarmReset.order())).await.unwrap();
+        assert_eq!(status(&client), Some(Status::Ready.word()), "a change is complete when the controller is ready");
+    }
+    client.ask(&point(1)).await.unwrap();
+    client.leave().await.unwrap();
+    assert_eq!(status(&client), Some(Status::Ready.word()));
+    let is_surprise = |event: &Event| matches!(event, Event::StatusReset(..) | Event::NotReleased(_));
+    assert!(!told.lock().unwrap().iter().any(is_surprise));
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_controller_that_is_never_ready_again_is_reported() {
+    let connect = async || {
+        let link = ImageLink::in_process(Box::<PeerWithoutReset>::default());
+        let mut client = Client::connect(link, Options { retries: 0, ..Options::default() }).await.unwrap();
+        let told = Arc::<Mutex<Vec<Event>>>::default();
+        client.watch(EventRecorder(Arc::clone(&told)));
+        client.ask(&point(1)).await.unwrap();
+        (client, told)
+    };
+    let (mut client, told) = connect().await;
+    client.leave().await.unwrap();
+    assert!(matches!(told.lock().unwrap().last(), Some(Event::NotReleased(Command::PointGet))));
+    let (mut client, _) = connect().await;
+    let next = client.ask(&point(1)).await.unwrap_err();
+    let why = NotSentReason::NotReady(Status::NormalEnd);
+    assert!(matches!(&next, Error::NotSent { why: reason, .. } if *reason == why), "{next}");
 }
 
 #[tokio::test(start_paused = true)]

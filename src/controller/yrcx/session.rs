@@ -61,6 +61,9 @@ pub struct Policy {
     pub settle: Duration,
     /// Until an interrupted command ends.
     pub stop: Duration,
+    /// Whether the exchange ends with the answer. It sends the status reset, but the next exchange waits for the ready
+    /// status.
+    pub ends_with_answer: bool,
 }
 
 impl Policy {
@@ -73,6 +76,7 @@ impl Policy {
         release: Duration::from_secs(3),
         settle: Duration::ZERO,
         stop: Duration::from_secs(3),
+        ends_with_answer: false,
     };
 
     /// Time limit of a command, by its duration class.

@@ -1,4 +1,4 @@
-//! Exchange of one remote command, from ready status to ready status (chapter 2, sections 1.2 and 2).
+//! Exchange of one remote command, from ready status to ready status or to the answer (chapter 2, sections 1.2 and 2).
 
 use std::fmt;
 use std::time::Duration;
@@ -27,7 +27,7 @@ pub struct Outcome {
     pub leftover: Option<Status>,
     /// Whether the running status was received. A short command may skip it.
     pub ran: bool,
-    /// Whether the controller is ready again.
+    /// Whether the controller is ready again. `false` if the exchange [ended with the answer](Policy::ends_with_answer).
     pub released: bool,
     /// Whether the stop input was left off, because the end of the motion was not received.
     pub stop_held: bool,
@@ -322,6 +322,10 @@ impl Exchange {
         self.outcome.ended = ended;
         self.outcome.elapsed = now.saturating_sub(self.sent.unwrap_or(now));
         output.next.set_command(&[0; COMMAND_WORDS]);
+        if self.policy.ends_with_answer && matches!(self.outcome.ended, Ended::Answered(_)) && !self.stopping {
+            self.phase = Phase::Over;
+            return;
+        }
         self.phase = Phase::Release(now);
         self.release(now, output);
     }

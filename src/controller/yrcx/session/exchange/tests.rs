@@ -259,6 +259,21 @@ fn an_end_status_of_another_master_is_reset_first() {
 }
 
 #[test]
+fn the_next_command_waits_for_the_reset_of_an_answered_one() {
+    let mut world = World::new(servo_status(), Script { runs: Some(0), ..Script::default() });
+    world.exchange = Exchange::new(servo_status(), Policy { ends_with_answer: true, ..Policy::default() });
+    let outcome = world.run();
+    assert!(matches!(outcome.ended, Ended::Answered(Answer::Done(_))) && !outcome.released);
+    assert_eq!(world.commands(), [(0, true), (0x0503, true)], "the reset is not sent yet");
+    assert_eq!(world.shown.0[0], Status::NormalEnd.word());
+    // The controller takes a command only if it is ready.
+    world.exchange = Exchange::new(move_to_19(), Policy::default());
+    world.exchange.handle(ms(world.now), &world.shown.clone());
+    assert!(matches!(world.run().ended, Ended::Answered(Answer::Done(_))));
+    assert_eq!(world.commands(), [(0, false), (0x0503, false), (0, true), (1, true), (0, false)]);
+}
+
+#[test]
 fn a_status_reset_waits_for_the_ready_status() {
     let reset = || Command::StatusReset.order().build().unwrap();
     let mut world = World::new(reset(), Script::default());
