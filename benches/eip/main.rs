@@ -155,7 +155,7 @@ fn trips(effort: &Effort) -> anyhow::Result<()> {
 }
 
 /// Measures the duration of a remote read command on a simulated controller with its scans. The time starts with the
-/// call and ends with the report, when the controller is ready for the next command.
+/// call and ends with the report. The controller may become ready for the next command only after this.
 fn commands(effort: &Effort) -> anyhow::Result<()> {
     println!("servo status, from giving it to the report: median");
     for rpi in [5, 10, 20].map(Duration::from_millis) {
