@@ -171,7 +171,10 @@ fn fields(request: &Request, frame: &[u8]) -> Vec<ReadableField> {
     }
     let notes = describe(frame, Sender::Client, None).fields.into_iter();
     let fields = notes.filter(|note| note.offset == INSTANCE || note.offset >= HEADER_LEN);
-    fields.filter(|note| !note.meaning.starts_with("reserved")).map(|note| (note.name, note.meaning)).collect()
+    fields
+        .filter(|note| !note.meaning.starts_with("reserved"))
+        .map(|note| (note.name.into(), note.meaning.into()))
+        .collect()
 }
 
 /// Returns a frame as hexadecimal digits, with `??` for bytes where the two frames differ.

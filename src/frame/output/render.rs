@@ -355,7 +355,7 @@ fn fold(text: &str, room: usize) -> String {
     for (at, word) in text.split(' ').enumerate() {
         let is_short = word.len() < GIANT_WORD && width_of(word) <= room;
         let whole = is_short.then_some(word);
-        let parts = pieces(word).filter(|_| !is_short);
+        let parts = (!is_short).then(|| pieces(word)).into_iter().flatten();
         for (part_at, part) in whole.into_iter().chain(parts).enumerate() {
             let gap = usize::from(at > 0 && part_at == 0);
             let wide = if part.len() < GIANT_WORD { width_of(part) } else { usize::MAX / 2 };
