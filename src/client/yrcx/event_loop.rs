@@ -193,7 +193,8 @@ impl Client {
         while self.is_up && Instant::now() < until {
             let is_done = self.exchange.as_ref().is_none_or(|exchange| !is_short(exchange));
             let passed = if self.is_shared { self.last_output.as_ref() } else { self.output.last_sent() };
-            if is_done && !self.is_resetting() && passed == Some(&self.output.next) {
+            let is_ready = self.is_shared || !self.is_resetting();
+            if is_done && is_ready && passed == Some(&self.output.next) {
                 break;
             }
             self.run_until(until).await?;
@@ -204,9 +205,11 @@ impl Client {
         Ok(())
     }
 
-    /// Whether the controller still has the status of an answered command.
-    fn is_resetting(&self) -> bool {
-        self.resetting.is_some() && self.input.is_some_and(|image| image.0[0] != Status::Ready.word())
+    /// Whether the output image resets the status of an answered command, and the input image still has this status.
+    pub(super) fn is_resetting(&self) -> bool {
+        let status = self.input.map(|image| Status::from_word(image.0[0]));
+        self.output_image().is_some_and(|output| output.0[0] == Status::Ready.word())
+            && status.is_some_and(Status::is_end)
     }
 
     /// Runs one turn of the event loop: polls, sends, and returns after one event or deadline.

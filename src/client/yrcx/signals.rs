@@ -46,7 +46,8 @@ impl Client {
         }
     }
 
-    /// Returns the current input image. Waits for the image if there is none yet.
+    /// Returns the current input image. Waits for the image if there is none yet, and for the end of a status reset, so
+    /// that the image does not have the status of an answered command.
     ///
     /// # Errors
     /// [`Error::Silent`] without an image within the time limit.
@@ -57,11 +58,12 @@ impl Client {
         self.catch_up().await?;
         let until = Instant::now() + self.timeout;
         loop {
-            if let Some(image) = self.input {
+            let is_over = Instant::now() >= until;
+            if let Some(image) = self.input.filter(|_| is_over || !self.is_resetting()) {
                 self.watcher.answered(&|| (IMAGE.to_owned(), signals_text(&image)));
                 return Ok(image);
             }
-            if Instant::now() >= until {
+            if is_over {
                 return Err(Error::Silent);
             }
             self.run_until(until).await?;

@@ -272,6 +272,9 @@ async fn a_read_ends_with_its_answer_and_the_reset_is_confirmed_later() {
     for _ in 0..2 {
         client.ask(&point(1)).await.unwrap();
         assert_eq!(status(&client), Some(Status::NormalEnd.word()));
+        let image = client.input_image().await.unwrap();
+        assert_eq!(image.0[0], Status::Ready.word(), "the image of a client does not have the status of its last read");
+        client.ask(&point(1)).await.unwrap();
         client.ask(&order(Command::AlarmReset.order())).await.unwrap();
         assert_eq!(status(&client), Some(Status::Ready.word()), "a change is complete when the controller is ready");
     }

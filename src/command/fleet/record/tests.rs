@@ -200,7 +200,9 @@ async fn recording_ends_at_its_time_or_size() {
     let poll = || plant.poll("state", |family| plant.path(&format!("{family}.toml")));
     let within = Record { within: Some(Duration::from_secs(2)), ..record(&plant.path("time")) };
     let report = within.record(poll(), (INTERVAL, None), &Screen::silent()).await.unwrap();
-    assert_eq!((report.ended, report.elapsed_ms), (End::Time, 2000));
+    assert_eq!(report.ended, End::Time);
+    // The last status reset of the YRCX controller is confirmed before the connection closes.
+    assert!((2000..2010).contains(&report.elapsed_ms), "{report:?}");
     assert!(report.robots.iter().all(|robot| (10..=11).contains(&robot.polls) && robot.failed == 0), "{report:?}");
     let small = Record { max_size: 20_000, ..record(&plant.path("size")) };
     let report = small.record(poll(), (INTERVAL, None), &Screen::silent()).await.unwrap();
