@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use armctl_controller::Now;
 use armctl_controller::yrcx::answer::{Answer, Status};
 use armctl_controller::yrcx::image::{Image, Words};
 use armctl_controller::yrcx::order::Order;
@@ -10,12 +11,12 @@ use armctl_controller::yrcx::sequence::{self, Sequence};
 use armctl_controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome, Policy, Silence};
 use armctl_controller::yrcx::signal::{input, output, resting};
 use armctl_controller::yrcx::table::DurationClass;
-use armctl_controller::{Now, Risk};
 use armctl_transport::image::{Event as LinkEvent, LinkError, image_after_loss};
 use armctl_transport::session::client::SessionBusy;
 use tokio::time::Instant;
 
 use super::error::Error;
+use super::exchange::ends_with_answer;
 use super::{Client, Event, Reply, Transport};
 
 /// Poll interval of a session without a deadline.
@@ -25,12 +26,6 @@ pub(super) const NO_DEADLINE: Duration = Duration::from_secs(3600);
 const MAX_SETTLE: Duration = Duration::from_secs(10);
 /// Time limit for sending the last change before the connection is closed.
 const LEAVE_TIMEOUT: Duration = Duration::from_secs(1);
-
-/// Whether a command has ended when its answer arrives. Only a read has: a failure of the status reset then concerns the
-/// next command, which waits for the ready status anyway. So the caller gets the answer one scan and two images earlier.
-pub(super) fn ends_with_answer(order: &Order) -> bool {
-    order.risk() == Risk::Read && !order.is_continuous()
-}
 
 impl Client {
     /// Waits for the first input image. On a commanding connection, also waits until the resting image is sent:
@@ -173,8 +168,7 @@ impl Client {
     }
 
     /// Waits at most 1 s for short commands to end, for the controller to be ready, and for the last change to be sent. A
-    /// running motion continues. A session sends the last change after this client has left, and its next client waits
-    /// for the ready controller.
+    /// running motion continues.
     ///
     /// # Errors
     /// Errors of the link.
@@ -192,17 +186,27 @@ impl Client {
         let until = Instant::now() + LEAVE_TIMEOUT;
         while self.is_up && Instant::now() < until {
             let is_done = self.exchange.as_ref().is_none_or(|exchange| !is_short(exchange));
-            let passed = if self.is_shared { self.last_output.as_ref() } else { self.output.last_sent() };
-            let is_ready = self.is_shared || !self.is_resetting();
-            if is_done && is_ready && passed == Some(&self.output.next) {
+            if is_done && self.has_sent_all() {
                 break;
             }
             self.run_until(until).await?;
         }
-        if let Some(command) = self.resetting.filter(|_| self.is_resetting()) {
+        if let Some(command) = self.resetting.filter(|_| !self.is_shared && self.is_resetting()) {
             self.watcher.event(Event::NotReleased(command));
         }
         Ok(())
+    }
+
+    /// Whether the last change was sent and the controller is ready. A session sends the status reset of a read after
+    /// this client has left, and its next client waits for the ready controller.
+    fn has_sent_all(&self) -> bool {
+        let next = &self.output.next;
+        let is_sent = self.output.last_sent() == Some(next);
+        if self.is_shared {
+            is_sent || self.resetting.is_some() && self.last_output.as_ref() == Some(next)
+        } else {
+            is_sent && !self.is_resetting()
+        }
     }
 
     /// Whether the output image resets the status of an answered command, and the input image still has this status.
@@ -293,6 +297,9 @@ impl Client {
             LinkEvent::Sent => {
                 self.in_flight = false;
                 self.output.sent(now);
+                if self.is_shared {
+                    self.resetting = None;
+                }
                 self.watcher.event(Event::ImageSent(self.output.next));
             }
             LinkEvent::Image(bytes) => self.handle_image(now, &bytes)?,

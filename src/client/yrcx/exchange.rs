@@ -15,7 +15,6 @@ use armctl_transport::session::client::SessionBusy;
 use tokio::time::Instant;
 
 use super::error::{Error, Refusal};
-use super::event_loop::ends_with_answer;
 use super::{Client, Event};
 use crate::Reason;
 
@@ -72,9 +71,16 @@ impl Reply {
     }
 }
 
+/// Whether a command has ended when its answer arrives. Only a read has: a failure of the status reset then concerns the
+/// next command, which waits for the ready status anyway. So the caller gets the answer one scan and two images earlier.
+pub(super) fn ends_with_answer(order: &Order) -> bool {
+    order.risk() == Risk::Read && !order.is_continuous()
+}
+
 impl Client {
     /// Sends a remote command and waits for its end; a refusal is returned as an error. Only a read is repeated, within
-    /// the time limit. A dry run plans the command.
+    /// the time limit. A read ends with its answer, any other command when the controller is ready again. A dry run
+    /// plans the command.
     ///
     /// # Errors
     /// [`Error::Refused`] with the alarm. After [`Error::NotSent`] and [`Error::NoAnswer`], the command can be repeated
@@ -161,15 +167,15 @@ impl Client {
         self.totals.commands += 1;
         self.totals.waited += outcome.elapsed;
         // A status that this client or another client of the session is resetting is no surprise.
-        let is_expected = self.is_shared || self.resetting.take().is_some();
+        let is_expected = self.resetting.take().is_some() || self.is_shared;
         if let Some(status) = outcome.leftover.filter(|_| !is_expected) {
             self.watcher.event(Event::StatusReset(order.command(), status));
         }
         if matches!(outcome.ended, Ended::Answered(_)) && !outcome.released {
-            if !ends_with_answer(order) {
-                self.watcher.event(Event::NotReleased(order.command()));
-            } else if !self.is_shared {
+            if ends_with_answer(order) {
                 self.resetting = Some(order.command());
+            } else {
+                self.watcher.event(Event::NotReleased(order.command()));
             }
         }
         // For a motion, the command ends when the motion ends. For a start of a program, the command ends while the

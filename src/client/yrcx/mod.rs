@@ -104,8 +104,8 @@ pub struct Client {
     is_shared: bool,
     /// Whether the remote command of this client has ended, so that another client may send the next command.
     is_turn_over: bool,
-    /// The answered command whose status reset is sent but not confirmed by the ready status. The next command waits for
-    /// the ready status. `None` in a session, where another client can send the next command.
+    /// The read whose status reset is not confirmed by the ready status; in a session, whose status reset is not sent.
+    /// The next command waits for the ready status.
     resetting: Option<Command>,
     started: Instant,
     watcher: Box<dyn Watcher<Event>>,

@@ -63,22 +63,29 @@ async fn constant_peer_client(risk: Risk, gone: Option<Duration>) -> Client {
     Client::connect(link, Options::default().with_risk(risk)).await.unwrap()
 }
 
-/// A peer that accepts a command and then executes it forever.
-#[derive(Debug, Default)]
-struct EndlessCommandPeer {
-    runs: bool,
+/// A peer that accepts a command, and then has this status forever.
+#[derive(Debug)]
+struct StuckPeer {
+    status: Status,
+    has_command: bool,
 }
 
-impl ImagePeer for EndlessCommandPeer {
+impl StuckPeer {
+    fn link(status: Status) -> ImageLink {
+        ImageLink::in_process(Box::new(Self { status, has_command: false }))
+    }
+}
+
+impl ImagePeer for StuckPeer {
     fn input(&mut self, _: Duration, bytes: Option<&[u8]>) {
-        self.runs |= bytes.is_some_and(|bytes| bytes[..2] != [0, 0]);
+        self.has_command |= bytes.is_some_and(|bytes| bytes[..2] != [0, 0]);
     }
 
     fn output(&mut self, _: Duration) -> Option<Vec<u8>> {
         let mut image = Image::default();
         output::CPU_OK.set(&mut image, true);
         output::PROGRAM_RUNNING.set(&mut image, true);
-        image.0[0] = if self.runs { 0x0100 } else { 0 };
+        image.0[0] = if self.has_command { self.status.word() } else { Status::Ready.word() };
         Some(image.to_bytes().to_vec())
     }
 
@@ -91,7 +98,7 @@ impl ImagePeer for EndlessCommandPeer {
 async fn unconfirmed_stop_fails_within_3_s() {
     let power = order(Command::ServoFree.order().with(Key::Axes, "1"));
     for what in [motion(), jog(), power] {
-        let link = ImageLink::in_process(Box::<EndlessCommandPeer>::default());
+        let link = StuckPeer::link(Status::Running);
         let mut client = Client::connect(link, Options::default().with_risk(Risk::Motion)).await.unwrap();
         assert!(timeout(Duration::from_secs(1), client.ask(&what)).await.is_err());
         let began = Instant::now();
@@ -99,7 +106,7 @@ async fn unconfirmed_stop_fails_within_3_s() {
         assert!(matches!(stopped, Err(Error::OutcomeUnknown { .. })), "{stopped:?}");
         assert!(began.elapsed() <= Duration::from_secs(3), "{:?}", began.elapsed());
     }
-    let link = ImageLink::in_process(Box::<EndlessCommandPeer>::default());
+    let link = StuckPeer::link(Status::Running);
     let mut client = Client::connect(link, Options::default().with_risk(Risk::Write)).await.unwrap();
     for stop in [Procedure::stop(), Procedure::emergency_stop()] {
         let began = Instant::now();
@@ -231,35 +238,12 @@ async fn dropped_motion_continues_until_a_stop() {
 #[tokio::test(start_paused = true)]
 async fn leaving_waits_for_a_short_command_and_not_for_a_motion() {
     for (order, waits) in [(point(1), true), (motion(), false)] {
-        let link = ImageLink::in_process(Box::<EndlessCommandPeer>::default());
+        let link = StuckPeer::link(Status::Running);
         let mut client = Client::connect(link, Options::default().with_risk(Risk::Motion)).await.unwrap();
         assert!(timeout(Duration::from_millis(300), client.ask(&order)).await.is_err());
         let began = Instant::now();
         client.leave().await.unwrap();
         assert_eq!(began.elapsed() >= Duration::from_secs(1), waits, "{order:?}");
-    }
-}
-
-/// A peer that answers the first command and ignores the status reset.
-#[derive(Debug, Default)]
-struct PeerWithoutReset {
-    has_ended: bool,
-}
-
-impl ImagePeer for PeerWithoutReset {
-    fn input(&mut self, _: Duration, bytes: Option<&[u8]>) {
-        self.has_ended |= bytes.is_some_and(|bytes| bytes[..2] != [0, 0]);
-    }
-
-    fn output(&mut self, _: Duration) -> Option<Vec<u8>> {
-        let mut image = Image::default();
-        output::CPU_OK.set(&mut image, true);
-        image.0[0] = if self.has_ended { Status::NormalEnd.word() } else { Status::Ready.word() };
-        Some(image.to_bytes().to_vec())
-    }
-
-    fn wake(&self) -> Option<Duration> {
-        None
     }
 }
 
@@ -288,7 +272,7 @@ async fn a_read_ends_with_its_answer_and_the_reset_is_confirmed_later() {
 #[tokio::test(start_paused = true)]
 async fn a_controller_that_is_never_ready_again_is_reported() {
     let connect = async || {
-        let link = ImageLink::in_process(Box::<PeerWithoutReset>::default());
+        let link = StuckPeer::link(Status::NormalEnd);
         let mut client = Client::connect(link, Options { retries: 0, ..Options::default() }).await.unwrap();
         let told = Arc::<Mutex<Vec<Event>>>::default();
         client.watch(EventRecorder(Arc::clone(&told)));

@@ -3,9 +3,9 @@
 
 mod data;
 
-use std::borrow::Cow;
+use std::fmt;
 
-use compact_str::CompactString;
+use compact_str::{CompactString, ToCompactString as _};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -29,7 +29,8 @@ pub struct Description {
     pub problem: Option<String>,
 }
 
-/// A part of a frame.
+/// A part of a frame. Short texts need no memory of their own: a capture has millions of parts, and one thread would free
+/// what another one allocated.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 #[schemars(rename = "FieldRow")]
 pub struct FieldNote {
@@ -75,13 +76,11 @@ impl Sender {
 
 /// Offset of the ACK flag in a frame.
 const ACK_AT: usize = 10;
-/// Number of fields in a frame with a short data part.
-const USUAL_FIELDS: usize = 20;
 
 /// Decodes a frame. `request` is the request that an answer belongs to, if it is known: an answer does not contain its
 /// request.
 pub fn describe(frame: &[u8], sender: Sender, request: Option<&Request>) -> Description {
-    let mut notes = Notes { frame, has_fields: true, at: 0, fields: Vec::with_capacity(USUAL_FIELDS), problem: None };
+    let mut notes = Notes { frame, has_fields: true, at: 0, fields: Vec::new(), problem: None };
     let (title, row) = notes.walk(sender, request);
     Description { title, section: row.map(Row::citation), fields: notes.fields, problem: notes.problem }
 }
@@ -173,11 +172,11 @@ fn status_words(status: Status) -> String {
     }
 }
 
-fn block_words(block: u32) -> Cow<'static, str> {
+fn block_words(block: u32) -> String {
     match (block & LAST_BLOCK != 0, block & !LAST_BLOCK) {
-        (true, 0) => "single frame".into(),
-        (true, number) => format!("block {number}, the last block").into(),
-        (false, number) => format!("block {number}").into(),
+        (true, 0) => "single frame".to_owned(),
+        (true, number) => format!("block {number}, the last block"),
+        (false, number) => format!("block {number}"),
     }
 }
 
@@ -190,36 +189,6 @@ fn instance_words(row: Option<&Row>, instance: u16) -> String {
         (Some(fs100), None) => format!("(fs100: {fs100})"),
         (None, Some(dx200)) => format!("(dx200: {dx200})"),
         (None, None) => "(not defined)".to_owned(),
-    }
-}
-
-/// Name of a field, with the number of its element in a plural command.
-struct FieldName {
-    number: Option<u32>,
-    name: &'static str,
-}
-
-impl From<&'static str> for FieldName {
-    fn from(name: &'static str) -> Self {
-        Self { number: None, name }
-    }
-}
-
-impl FieldName {
-    fn text(&self) -> Cow<'static, str> {
-        match self.number {
-            Some(number) => format!("{number} {}", self.name).into(),
-            None => self.name.into(),
-        }
-    }
-}
-
-/// A text without memory of its own, if it is constant or short. A capture has millions of fields, and one thread
-/// would free what another one allocated.
-fn compact(text: Cow<'static, str>) -> CompactString {
-    match text {
-        Cow::Borrowed(text) => CompactString::const_new(text),
-        Cow::Owned(text) => text.into(),
     }
 }
 
@@ -244,24 +213,22 @@ impl Notes<'_> {
     }
 
     /// Adds the next `size` bytes. If bytes are missing, or were missing before, adds no field.
-    fn take<M: Into<Cow<'static, str>>>(
-        &mut self,
-        size: usize,
-        name: impl Into<FieldName>,
-        meaning: impl FnOnce(&[u8]) -> M,
-    ) -> bool {
+    fn take(&mut self, size: usize, name: impl fmt::Display, meaning: impl FnOnce(&[u8]) -> String) -> bool {
         if self.problem.is_some() {
             return false;
         }
         let Some(bytes) = self.at.checked_add(size).and_then(|end| self.frame.get(self.at..end)) else {
-            let name = name.into().text();
             self.problem = Some(format!("the frame ends inside '{name}' at offset {}", self.at));
             return false;
         };
         if self.has_fields {
-            let (offset, name, raw, meaning) =
-                (self.at, compact(name.into().text()), hex(bytes).into(), compact(meaning(bytes).into()));
-            self.fields.push(FieldNote { offset, size, name, raw, meaning });
+            self.fields.push(FieldNote {
+                offset: self.at,
+                size,
+                name: name.to_compact_string(),
+                raw: hex(bytes).into(),
+                meaning: meaning(bytes).into(),
+            });
         }
         self.at += size;
         true
@@ -272,7 +239,7 @@ impl Notes<'_> {
     }
 
     /// Adds the remaining bytes, if any.
-    fn take_rest<M: Into<Cow<'static, str>>>(&mut self, name: &'static str, meaning: impl FnOnce(&[u8]) -> M) {
+    fn take_rest(&mut self, name: &str, meaning: impl FnOnce(&[u8]) -> String) {
         let size = self.frame.len().saturating_sub(self.at);
         if size > 0 {
             self.take(size, name, meaning);
@@ -288,24 +255,24 @@ impl Notes<'_> {
         self.take(4, "identifier", |bytes| format!("\"{}\"", bytes.escape_ascii()));
         self.take(2, "header size", |bytes| format!("{} bytes", little(bytes)));
         self.take(2, "data size", |bytes| format!("{} bytes", little(bytes)));
-        self.take(1, "reserve 1", |_| "reserved, 0x03");
+        self.take(1, "reserve 1", |_| "reserved, 0x03".to_owned());
         self.take(1, "processing division", |bytes| match bytes {
-            [1] => "robot control",
-            [2] => "file control",
-            _ => "not defined",
+            [1] => "robot control".to_owned(),
+            [2] => "file control".to_owned(),
+            _ => "not defined".to_owned(),
         });
         self.take(1, "ACK", |bytes| match bytes {
-            [0] => "request",
-            [1] => "any frame except a request",
-            _ => "not defined",
+            [0] => "request".to_owned(),
+            [1] => "any frame except a request".to_owned(),
+            _ => "not defined".to_owned(),
         });
         self.take(1, "request ID", |bytes| little(bytes).to_string());
         self.take(4, "block number", |bytes| match u32::try_from(little(bytes)) {
-            Ok(0) => "0".into(),
+            Ok(0) => "0".to_owned(),
             Ok(block) => block_words(block),
-            Err(_) => "".into(),
+            Err(_) => String::new(),
         });
-        self.take(8, "reserve 2", |_| "reserved, \"99999999\"");
+        self.take(8, "reserve 2", |_| "reserved, \"99999999\"".to_owned());
     }
 
     fn client(&mut self) -> (String, Option<&'static Row>) {
@@ -318,7 +285,7 @@ impl Notes<'_> {
         let ack = self.frame.get(ACK_AT) == Some(&1);
         let row = request.row();
         let name = self.title(|| title_of(row, &request));
-        self.take(2, "command", |_| row.map_or("not defined", |row| row.name));
+        self.take(2, "command", |_| row.map_or("not defined", |row| row.name).to_owned());
         self.take(2, "instance", |_| format!("{} {}", request.instance, instance_words(row, request.instance)));
         let service = row.and_then(|row| row.service(request.service));
         self.take(1, "attribute", |_| match (row, service) {
@@ -327,8 +294,8 @@ impl Notes<'_> {
             }
             _ => request.attribute.to_string(),
         });
-        self.take(1, "service", |_| service.map_or("not defined", |service| service.meaning));
-        self.take(2, "padding", |_| "");
+        self.take(1, "service", |_| service.map_or("not defined", |service| service.meaning).to_owned());
+        self.take(2, "padding", |_| String::new());
         let title = if ack {
             let size = self.left();
             self.take_rest("file data", |bytes| format!("{} bytes", bytes.len()));
@@ -342,7 +309,7 @@ impl Notes<'_> {
                 (Some(row), Some(_)) if row.plural.is_some() => self.payload(row, &request),
                 _ => {}
             }
-            self.take_rest("data", |_| "not expected");
+            self.take_rest("data", |_| "not expected".to_owned());
             self.title(|| format!("request: {name}"))
         };
         let damage = RequestFrame::parse(self.frame).err().map(|error| error.to_string());
@@ -372,15 +339,15 @@ impl Notes<'_> {
                 format!("answer to {:#04x}, not to {service:#04x}", byte.wrapping_sub(ANSWER_BIT))
             }
             ([byte], None) if *byte >= ANSWER_BIT => format!("answer to {:#04x}", byte - ANSWER_BIT),
-            _ => String::from("not defined"),
+            _ => "not defined".to_owned(),
         });
         self.take(1, "status", |bytes| match bytes {
-            [0] => "ok",
-            [0x1F] => "refused, see the added status",
-            _ => "refused",
+            [0] => "ok".to_owned(),
+            [0x1F] => "refused, see the added status".to_owned(),
+            _ => "refused".to_owned(),
         });
         self.take(1, "added status size", |bytes| format!("{} words of 16 bits", little(bytes)));
-        self.take(1, "padding", |_| "");
+        self.take(1, "padding", |_| String::new());
         self.take(4, "added status", |bytes| format!("{:04X}", little(bytes)));
         let is_file = self.frame.get(9) == Some(&2);
         let answered = self.frame.get(24).map(|byte| byte.wrapping_sub(ANSWER_BIT));
@@ -391,7 +358,7 @@ impl Notes<'_> {
                 if reads {
                     self.payload(row, request);
                 }
-                self.take_rest("data", |_| "more data than the command has");
+                self.take_rest("data", |_| "more data than the command has".to_owned());
             }
             (Some(_), _) => self.take_rest("file data", |bytes| format!("{} bytes", bytes.len())),
             // The service of a file server answer determines its content.
@@ -399,7 +366,7 @@ impl Notes<'_> {
                 self.take_rest("names", |bytes| format!("\"{}\"", bytes.escape_ascii()));
             }
             _ if is_file => self.take_rest("file data", |bytes| format!("{} bytes", bytes.len())),
-            _ => self.take_rest("data", |_| "depends on the command"),
+            _ => self.take_rest("data", |_| "depends on the command".to_owned()),
         }
         let damage = AnswerFrame::parse(self.frame).err().map(|error| error.to_string());
         self.problem = damage.or(self.problem.take());

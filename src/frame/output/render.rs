@@ -96,7 +96,7 @@ fn fields_text(fields: &[(&'static str, Cell)], width: u16, color: bool) -> Stri
         };
         let mut line =
             if is_beside { format!("{name}{:padding$}", "") } else { format!("{}\n{:INDENT$}", name.trim_end(), "") };
-        for (at, part) in fold(&text, room, width_of).lines().enumerate() {
+        for (at, part) in fold(&text, room).lines().enumerate() {
             if at > 0 {
                 line = format!("{:indent$}", "");
             }
@@ -227,7 +227,7 @@ impl Layout {
         let cell = |(cell, column): (&'c Cell, &Column)| {
             let is_plain = !color || cell.tone == Tone::Plain;
             let is_simple = is_plain && escape::is_printable_ascii(&cell.text);
-            let shown = is_simple.then(|| folded_by(Cow::Borrowed(&cell.text), column.width, str::len))?;
+            let shown = is_simple.then(|| folded(Cow::Borrowed(&cell.text), column.width))?;
             shown.split('\n').all(|line| line.len() <= column.width).then_some(shown)
         };
         if row.len() == self.columns.len() { row.iter().zip(&self.columns).map(cell).collect() } else { None }
@@ -345,16 +345,11 @@ const GIANT_WORD: usize = 4096;
 
 /// A text in lines of `room` columns.
 fn folded(text: Cow<'_, str>, room: usize) -> Cow<'_, str> {
-    folded_by(text, room, width_of)
-}
-
-/// As [`folded`], with the function that measures each word.
-fn folded_by(text: Cow<'_, str>, room: usize, width_of: impl Fn(&str) -> usize) -> Cow<'_, str> {
-    if text.len() < GIANT_WORD && width_of(&text) <= room { text } else { fold(&text, room, width_of).into() }
+    if text.len() < GIANT_WORD && width_of(&text) <= room { text } else { fold(&text, room).into() }
 }
 
 /// Breaks a text between words, into lines of `room` columns.
-fn fold(text: &str, room: usize, width_of: impl Fn(&str) -> usize) -> String {
+fn fold(text: &str, room: usize) -> String {
     let mut out = String::with_capacity(text.len() + text.len() / room.max(1) + 1);
     let mut column = 0;
     for (at, word) in text.split(' ').enumerate() {

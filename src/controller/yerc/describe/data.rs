@@ -1,8 +1,8 @@
 //! Decoder of the data part, by the fields of its row.
 
-use std::borrow::Cow;
+use std::fmt;
 
-use super::{FieldName, Meaning, Notes, is_backup, little};
+use super::{Meaning, Notes, is_backup, little};
 use crate::units::{self, Unit};
 use crate::yerc::payload::PositionKind;
 use crate::yerc::request::Request;
@@ -54,11 +54,26 @@ impl Notes<'_> {
     }
 }
 
-fn words(kind: Kind, bytes: &[u8], known: &mut Meaning) -> Cow<'static, str> {
+/// Name of a field, with the number of its element.
+struct FieldName {
+    number: Option<u32>,
+    name: &'static str,
+}
+
+impl fmt::Display for FieldName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.number {
+            Some(number) => write!(f, "{number} {}", self.name),
+            None => f.write_str(self.name),
+        }
+    }
+}
+
+fn words(kind: Kind, bytes: &[u8], known: &mut Meaning) -> String {
     let unsigned = little(bytes);
     let word = u32::try_from(unsigned).unwrap_or_default();
     let signed = word.cast_signed();
-    let text = match kind {
+    match kind {
         Kind::U8 | Kind::U16 | Kind::U32 => unsigned.to_string(),
         Kind::Signals => format!("{word:08b}, highest signal first"),
         Kind::I16 => u16::try_from(unsigned).unwrap_or_default().cast_signed().to_string(),
@@ -84,11 +99,10 @@ fn words(kind: Kind, bytes: &[u8], known: &mut Meaning) -> Cow<'static, str> {
             Some(2) => format!("{} deg/s", units::DEGREE_PER_SECOND.show_unsigned(word)),
             _ => word.to_string(),
         },
-        Kind::Reserved => return "reserved, 0".into(),
+        Kind::Reserved => "reserved, 0".to_owned(),
         Kind::FileName if is_backup(bytes) => format!("{} (creates or reads the batch backup)", text(bytes)),
         Kind::Text(_) | Kind::FileName | Kind::Filter => text(bytes),
-    };
-    text.into()
+    }
 }
 
 fn in_unit(unit: Unit, value: i32) -> String {
@@ -102,9 +116,11 @@ fn text(bytes: &[u8]) -> String {
 }
 
 fn flags(bits: &[Bit], word: u32) -> String {
-    let mut words: Vec<&str> = bits.iter().map(|bit| bit.word(word)).filter(|word| !word.is_empty()).collect();
+    let mut words: Vec<String> =
+        bits.iter().map(|bit| bit.word(word)).filter(|word| !word.is_empty()).map(str::to_owned).collect();
     let reserved = word & !bits.iter().fold(0, |mask, bit| mask | 1 << bit.bit);
-    let reserved = (reserved != 0).then(|| format!("reserved {reserved:#x}"));
-    words.extend(reserved.as_deref());
+    if reserved != 0 {
+        words.push(format!("reserved {reserved:#x}"));
+    }
     words.join(", ")
 }
