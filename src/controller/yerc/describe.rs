@@ -29,8 +29,9 @@ pub struct Description {
     pub problem: Option<String>,
 }
 
-/// A part of a frame. Short texts need no memory of their own: a capture has millions of parts, and one thread would free
-/// what another one allocated.
+// Short texts need no memory of their own: a capture has millions of parts, and one thread would free what another
+// one allocated.
+/// A part of a frame.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 #[schemars(rename = "FieldRow")]
 pub struct FieldNote {
