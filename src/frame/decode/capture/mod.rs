@@ -191,8 +191,9 @@ struct MessageBuffer<F> {
     is_full: bool,
 }
 
-/// Memory of the messages above which a report is printed while the file is read.
-const STREAM_ABOVE: usize = 16 << 20;
+/// Memory of the messages above which a report is printed while the file is read. It is small, so that printing begins
+/// early.
+const STREAM_ABOVE: usize = 1 << 20;
 /// Memory limit if all messages are needed as one value, for a filter.
 const MEMORY_LIMIT: usize = 256 << 20;
 
