@@ -220,7 +220,8 @@ impl World {
         for robot in &mut self.robots {
             robot.halt(fault);
         }
-        self.later(SCAN, Action::PowerLoss);
+        // An alarm at time 0 belongs to the start state, so power is already off.
+        self.later(if self.now.is_zero() { Duration::ZERO } else { SCAN }, Action::PowerLoss);
     }
 
     /// Stops programs and decelerates motions.
