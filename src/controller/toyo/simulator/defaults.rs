@@ -77,13 +77,15 @@ pub(super) fn values(parameter: &Parameter, row: i32) -> Vec<Value> {
     fields.map(|(field, text)| field.read(text).expect("the defaults are in form")).collect()
 }
 
-/// All parameters without rows, in order.
+/// All parameters without rows, by id.
 ///
 /// # Panics
 /// Never: the number of values equals the number of fields.
-pub(super) fn singles() -> Vec<Record> {
+pub(super) fn singles() -> impl Iterator<Item = (&'static str, Record)> {
     let singles = PARAMETERS.iter().filter(|parameter| parameter.row().is_none());
-    singles.map(|parameter| parameter.layout.record(values(parameter, 0)).expect("a value for every field")).collect()
+    singles.map(|parameter| {
+        (parameter.id, parameter.layout.record(values(parameter, 0)).expect("a value for every field"))
+    })
 }
 
 /// All rows of the tables except T1, by table id and row.

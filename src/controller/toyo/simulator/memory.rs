@@ -118,7 +118,8 @@ pub(super) struct Easy {
 #[derive(Debug, Clone)]
 pub(super) struct Content {
     axes: usize,
-    singles: Vec<Record>,
+    /// Parameters without rows, by id.
+    singles: BTreeMap<&'static str, Record>,
     rows: BTreeMap<(&'static str, i32), Vec<Value>>,
     points: [Vec<[i32; AXES]>; TASKS],
     steps: [Vec<Step>; TASKS],
@@ -171,7 +172,7 @@ impl Content {
     pub(super) fn new(axes: usize, robot_type: i32) -> Self {
         let mut content = Self {
             axes,
-            singles: defaults::singles(),
+            singles: defaults::singles().collect(),
             rows: defaults::rows().collect(),
             points: std::array::from_fn(|_| vec![[0; AXES]; POINTS]),
             steps: Default::default(),
@@ -209,13 +210,11 @@ impl Content {
     /// # Panics
     /// If the parameter does not exist, which is an error of the caller.
     pub(super) fn single(&self, id: &str) -> &Record {
-        let place = PARAMETERS.iter().filter(|row| row.row().is_none()).position(|row| row.id == id);
-        &self.singles[place.expect("a parameter of the table")]
+        self.singles.get(id).expect("a parameter of the table")
     }
 
     fn put_single(&mut self, parameter: &Parameter, record: Record) {
-        let place = PARAMETERS.iter().filter(|row| row.row().is_none()).position(|row| row.id == parameter.id);
-        if let Some(single) = place.and_then(|place| self.singles.get_mut(place)) {
+        if let Some(single) = self.singles.get_mut(parameter.id) {
             *single = record;
         }
     }
@@ -246,8 +245,8 @@ impl Content {
     }
 
     pub(super) fn differs(&self, other: &Self, group: Group) -> bool {
-        let singles = PARAMETERS.iter().filter(|row| row.row().is_none());
-        singles.zip(self.singles.iter().zip(&other.singles)).any(|(row, (a, b))| row.group() == group && a != b)
+        let group_of = |id| Parameter::named(id).map(Parameter::group);
+        self.singles.iter().any(|(id, record)| other.singles.get(id) != Some(record) && group_of(id) == Some(group))
     }
 }
 

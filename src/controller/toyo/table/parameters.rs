@@ -65,8 +65,10 @@ impl Parameter {
 
     /// Returns the parameter whose id is in a text after `RPAR` or `WPAR`.
     pub fn from_text(text: &str) -> Option<&'static Self> {
-        PARAMETERS.iter().find(|row| {
-            let id = row.key.text.split(" {}").next().and_then(|text| text.split("{}").next()).unwrap_or_default();
+        // A quick comparison of the first letter leaves out most of the table.
+        let letter = text.trim_start_matches(' ').chars().next()?;
+        PARAMETERS.iter().filter(|row| row.key.text.starts_with(letter)).find(|row| {
+            let id = row.key.text.split('{').next().unwrap_or_default().trim_end();
             let mut words = text.split(' ').filter(|word| !word.is_empty());
             // An id such as `T2 V` ends in letters. A number or a key follows directly after these letters.
             id.split(' ').all(|word| words.next().is_some_and(|words| words == word || is_key(word, words)))
