@@ -18,9 +18,6 @@ class World:
     prefix = []  # words before those of armctl
     probe = None  # a read that fails while a command of another client runs
 
-    async def settle(self):
-        pass
-
     def close(self):
         pass
 
