@@ -1,5 +1,5 @@
 //! `armctl decode FAMILY FILE.pcapng`: messages of a family in a capture file. `report` is the printed report,
-//! `stream` prints reports that do not fit into memory.
+//! `stream` prints long reports.
 
 mod report;
 mod stream;
@@ -92,7 +92,7 @@ impl Input<'_> {
     }
 }
 
-/// Report, unless it does not fit into memory, and the decoder, ready to restart.
+/// Report, unless it is long, and the decoder, ready to restart.
 type Captured<D> = (Option<Capture<<D as CaptureDecoder>::Field>>, D);
 
 /// Decoder for the messages of a family.
@@ -299,8 +299,7 @@ struct Source<'a, O> {
 }
 
 impl<R: Read, O: Fn() -> io::Result<R> + Sync> Source<'_, O> {
-    /// Content of the file, unless it does not fit into memory and must be streamed; also the decoder, ready to
-    /// restart.
+    /// Content of the file, unless it is long and must be streamed; also the decoder, ready to restart.
     fn capture<D: CaptureDecoder>(&self, mut decoder: D, room: usize, detail: Detail) -> Result<Captured<D>> {
         let frame = self.selection.frame;
         let mut kept = MessageBuffer::new(room, frame, detail);
@@ -320,7 +319,7 @@ impl<R: Read, O: Fn() -> io::Result<R> + Sync> Source<'_, O> {
         Ok((Some(self.content(kept, links, &summary, content)?), decoder.restart()))
     }
 
-    /// Content of a file whose messages fit into memory.
+    /// Content of a file whose messages are in memory.
     fn content<F>(
         &self,
         mut kept: MessageBuffer<F>,

@@ -1,5 +1,5 @@
-//! Reports with more messages than fit into memory: the file is printed while it is read, with constant memory. Links and
-//! totals are printed after the messages.
+//! Long reports: the file is printed while it is read, with constant memory. Links and totals are printed after the
+//! messages.
 
 use std::cell::{OnceCell, RefCell};
 use std::io::{self, Read};
@@ -39,8 +39,8 @@ pub fn json<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder>(
     failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, is_reported: true }))
 }
 
-/// Prints the messages as a table. If they do not fit into memory, the table is printed while the file is read. Its
-/// columns then fit to the first messages, and the summary is below it.
+/// Prints the messages as a table. A long table is printed while the file is read. Its columns then fit to the first
+/// messages, and the summary is below it.
 pub fn table<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder>(
     run: &Run,
     id: &str,
@@ -74,7 +74,7 @@ pub fn table<R: Read, O: Fn() -> io::Result<R> + Sync, D: CaptureDecoder>(
     table.finish(source.about::<D::Field>(&summary, content.packets, content.notes))
 }
 
-/// A table with more messages than fit into memory.
+/// A table that is printed while the file is read.
 struct LongTable<'a> {
     run: &'a Run,
     /// Time of the first packet.
