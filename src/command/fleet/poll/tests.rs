@@ -6,7 +6,7 @@ use futures_util::future::join;
 use tempfile::TempDir;
 use tokio::time::Instant;
 
-use super::{Event, Extra, Poll, PollRequest, RobotId, Subscription};
+use super::{Event, Extra, Poll, PollCounter, PollRequest, RobotId, Subscription};
 use armctl_frame::face::sample::{Detail, Sample, Traffic};
 use armctl_frame::prelude::*;
 use armctl_frame::settings::inventory::{Inventory, Location};
@@ -120,6 +120,27 @@ async fn polls_every_family_in_each_detail() {
             }
         }
     }
+}
+
+/// A robot that answers gets no more polls than the slowest one.
+#[tokio::test(start_paused = true)]
+async fn counts_the_polls_of_each_robot() {
+    let plant = Plant::new(&[("a", "yerc", "sim:"), ("b", "yerc", "sim:?fault=drop%3D100%25")]);
+    let poll = plant.all();
+    let ids: Vec<RobotId> = poll.robots().iter().map(RobotId::for_robot).collect();
+    let polls = subscription(poll, PollRequest::every(POLL_INTERVAL), async |events: &mut Subscription| {
+        let (mut counter, mut polls) = (PollCounter::new(&ids, Some(2)), Vec::new());
+        while let Some(event) = counter.next(events).await {
+            match event {
+                Event::Polled(poll) => polls.push(poll.robot.name.clone()),
+                Event::Failed { robot, .. } => polls.push(robot.name.clone()),
+                _ => {}
+            }
+        }
+        polls
+    })
+    .await;
+    assert_eq!(polls, ["a", "a", "b", "b"]);
 }
 
 #[tokio::test(start_paused = true)]
