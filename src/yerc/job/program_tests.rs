@@ -162,6 +162,6 @@ async fn jobs_of_a_controller_are_read_once() {
     let tree = lines.pop().unwrap().unwrap();
     assert_eq!(tree["programs"].as_array().unwrap().len(), 3, "{tree}");
     let check = lines.pop().unwrap().unwrap();
-    assert_eq!(check["files"].as_array().unwrap().len(), 6, "{check}");
+    assert_eq!(check["files"].as_array().unwrap().len(), 7, "{check}");
     assert_eq!(lines.pop().unwrap().unwrap()["matches"][0]["program"], "MAIN");
 }

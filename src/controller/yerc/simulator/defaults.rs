@@ -23,7 +23,7 @@ pub(super) const fn versions(model: Model) -> [&'static str; 4] {
 const JAPANESE_JOB: &str = "テスト";
 
 /// Jobs: name, and instructions between NOP and END.
-const JOBS: [(&str, &str); 6] = [
+const JOBS: [(&str, &str); 7] = [
     (
         "TESTJOB",
         "'A PICK AND PLACE THAT ENDS WHERE IT BEGAN\nSET B000 0\n*AGAIN\nMOVJ C00000 VJ=25.00\nMOVL C00001 V=200.0\n\
@@ -34,6 +34,7 @@ JUMP *AGAIN IF B000<3",
     ("COUNT", "INC D000\nADD I000 2\nRET"),
     ("WAITIN", "WAIT IN#(1)=ON\nSET B010 1\nTIMER T=1.00\nSET B010 2"),
     ("HOME", "MOVJ C00000 VJ=10.00"),
+    ("JOB", "MOVJ C00000 VJ=25.00\nMOVL C00001 V=200.0\nMOVJ C00002 VJ=25.00\nMOVJ C00000 VJ=25.00"),
     (JAPANESE_JOB, "'日本語のコメント\nTIMER T=1.00"),
 ];
 
